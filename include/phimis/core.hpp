@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#ifndef PHIMIS_CORE_HPP
+#define PHIMIS_CORE_HPP
+
+// All of phimis::core: C++17, the standard library only, no heap, no exceptions, host and device.
+#include <phimis/core/config.hpp>
+#include <phimis/core/counts.hpp>
+#include <phimis/core/divergence.hpp>
+#include <phimis/core/estimator.hpp>
+#include <phimis/core/exact_minimiser.hpp>
+#include <phimis/core/finite.hpp>
+#include <phimis/core/fractions.hpp>
+#include <phimis/core/moments.hpp>
+#include <phimis/core/newton_raphson.hpp>
+#include <phimis/core/observation.hpp>
+#include <phimis/core/pair_sums.hpp>
+#include <phimis/core/rule.hpp>
+#include <phimis/core/solve_pair.hpp>
+#include <phimis/core/table.hpp>
+#include <phimis/core/uniform.hpp>
+#include <phimis/core/value.hpp>
+#include <phimis/core/version.hpp>
+#include <phimis/core/weight_heuristic.hpp>
+
+#endif  // PHIMIS_CORE_HPP

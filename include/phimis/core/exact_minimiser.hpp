@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#ifndef PHIMIS_CORE_EXACT_MINIMISER_HPP
+#define PHIMIS_CORE_EXACT_MINIMISER_HPP
+
+#include <phimis/core/config.hpp>
+#include <phimis/core/divergence.hpp>
+#include <phimis/core/pair_sums.hpp>
+#include <phimis/core/rule.hpp>
+#include <phimis/core/solve_pair.hpp>
+#include <phimis/core/table.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace phimis {
+
+/// Whether each pdf is made to integrate to one on the sample.
+///
+/// E_q[p_k/q] = 1 is known. Dividing p_k by its mean Σ_j(p_kj/q_j)/n on the sample before the divergence is minimised
+/// removes most of the noise of the fractions, and makes a zero-variance mixture be found exactly from any sample. At
+/// the solution it is the control variate λ̂ Σ_j (p_kj/q_j − 1) with the self-normalised λ̂ = Σ(p/q)s / Σ(p/q), but the
+/// problem stays convex. It must be off where a pdf is defective (∫ p_k < 1).
+enum class control_variate { on, off };
+
+/// Which density the rows are taken to be drawn from.
+enum class sample_density {
+  aggregate,  ///< q̄ = Σ_k n_k p_k / n, the mixture of all samples so far: less noise
+  own         ///< each observation's own q
+};
+
+/// What the exact minimiser takes beside the options of every rule.
+struct minimiser_options {
+  phimis::control_variate control_variate = phimis::control_variate::on;
+  phimis::sample_density density = phimis::sample_density::aggregate;
+};
+
+/// The fractions that minimise a divergence on all observations ever made, solved to a KKT certificate.
+///
+///     min_α Σ_j (p_j/q_j) φ(g_j/p_j) + prior · D(π, α),   α_k ≥ floor_k,   Σ α_k = 1
+///
+/// Table     where rows are kept: fixed_table, or table, which grows.
+/// Requires  two techniques; observations whose `technique` is the one that drew them, where the density is aggregate.
+/// Errors    `status()`; `residual()` is the KKT residual relative to λ.
+/// Cost      an update reads all rows 5 to 10 times, with one division a row.
+///
+/// Source T Eqs. 16, 18, 25; design: bracketed Newton on a monotone function, end points first.
+template <class Divergence, class Table>
+class exact_minimiser : public rule_base<typename Table::real, 2> {
+  static_assert(Table::techniques == 2, "exact_minimiser solves for two techniques");
+
+ public:
+  using Real = typename Table::real;
+
+  explicit exact_minimiser(const Divergence& divergence = {}, const rule_options<Real, 2>& options = {},
+                           const minimiser_options& minimiser = {}) noexcept
+      : rule_base<Real, 2>(options), divergence_(divergence), minimiser_(minimiser) {}
+
+  PHIMIS_HOST_DEVICE const Divergence& divergence() const noexcept { return divergence_; }
+  PHIMIS_HOST_DEVICE const Table& table() const noexcept { return table_; }
+  PHIMIS_HOST_DEVICE double residual() const noexcept { return residual_; }
+  PHIMIS_HOST_DEVICE int evaluations() const noexcept { return evaluations_; }
+
+  PHIMIS_HOST_DEVICE void observe(const observation<Real, 2>& sample) {
+    row<Real, 2> row;
+    if (minimiser_.density == sample_density::aggregate) {
+      PHIMIS_EXPECTS(sample.technique == 0 || sample.technique == 1);
+      ++drawn_[sample.technique];
+    }
+    if (!this->admit(sample, row)) return;
+    if (!table_.push(row)) {
+      ++this->counters_.dropped;
+      return;
+    }
+    if (row.u > largest_) largest_ = row.u;
+  }
+
+  PHIMIS_HOST_DEVICE rule_status update() noexcept {
+    if (infinite_at_zero(divergence_) && this->counters_.zero > 0) {
+      return this->status_ = rule_status::infinite_divergence;
+    }
+    if (!(largest_ > 0)) return this->status_ = rule_status::no_information;
+    const prepared on = prepare();
+    if (!(on.mass[0] > 0) || !(on.mass[1] > 0)) return this->status_ = rule_status::no_information;
+
+    // The solver's fractions are those of the normalised pdfs: a_k ∝ α_k/κ_k.
+    const auto& floors = this->options_.floors;
+    const pair_fractions low = to_solver(on, floors[0], 1 - static_cast<double>(floors[0]));
+    const pair_fractions high = to_solver(on, 1 - static_cast<double>(floors[1]), floors[1]);
+    const pair_fractions start = to_solver(on, this->fractions_[0], this->fractions_[1]);
+    const pair_fractions prior = to_solver(on, this->options_.start[0], this->options_.start[1]);
+    const problem evaluate{*this, on, prior};
+    constexpr double epsilon = 4 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    const pair_solution solution = solve_pair(evaluate, low, high, start, epsilon);
+    evaluations_ = solution.evaluations;
+    residual_ = detail::is_kinked<Divergence>::value && solution.bracketed ? 0 : solution.residual;
+
+    if (solution.alpha.first == low.first && solution.alpha.second == low.second) {
+      set_fractions(floors[0], 1 - static_cast<double>(floors[0]));
+    } else if (solution.alpha.first == high.first && solution.alpha.second == high.second) {
+      set_fractions(1 - static_cast<double>(floors[1]), floors[1]);
+    } else {
+      const double first = solution.alpha.first * on.kappa[0];
+      const double second = solution.alpha.second * on.kappa[1];
+      set_fractions(first / (first + second), second / (first + second));
+    }
+    constexpr double tolerance = 1e4 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    if (residual_ > tolerance) return this->status_ = rule_status::not_converged;
+    return this->status_ = std::is_same<Divergence, multi_sample_variance>::value ? rule_status::local
+                                                                                    : rule_status::updated;
+  }
+
+  /// Adds the observations of another state; fractions stay until the next update.
+  PHIMIS_HOST_DEVICE void merge(const exact_minimiser& other) {
+    this->counters_.merge(other.counters_);
+    for (int k = 0; k < 2; ++k) drawn_[k] += other.drawn_[k];
+    for (std::ptrdiff_t j = 0; j < other.table_.size(); ++j) {
+      if (!table_.push(other.table_[j])) ++this->counters_.dropped;
+    }
+    if (other.largest_ > largest_) largest_ = other.largest_;
+  }
+
+ private:
+  struct prepared {
+    double mass[2];   // Σ_j p_kj/q_j
+    double kappa[2];  // 1, or n/mass: what each pdf is multiplied by
+    double unit;      // multiplies u
+    double mean;      // Σ_j f_j/q_j / n in that unit
+  };
+
+  struct preparation {
+    const columns<Real, 2>& rows;
+    Real* w;
+    Real share[2];
+    Real inverse;
+    bool aggregate;
+    PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, int l, detail::lane_sums<Real, 3>& sums) const noexcept {
+      const Real y1 = rows.y[0][j];
+      const Real y2 = rows.y[1][j];
+      if (aggregate) w[j] = 1 / (share[0] * y1 + share[1] * y2);
+      sums.lane[0][l] += w[j] * y1;
+      sums.lane[1][l] += w[j] * y2;
+      sums.lane[2][l] += w[j] * (rows.u[j] * inverse);
+    }
+  };
+
+  /// Sums over rows at a point, and the prior's two rows: one for each technique, in which only it has density.
+  struct problem {
+    const exact_minimiser& rule;
+    const prepared& on;
+    pair_fractions prior;
+
+    PHIMIS_HOST_DEVICE pair_sums operator()(const pair_fractions& at) const noexcept {
+      const pair_point<Real> point{{static_cast<Real>(at.first), static_cast<Real>(at.second)},
+                                   {static_cast<Real>(on.kappa[0]), static_cast<Real>(on.kappa[1])},
+                                   static_cast<Real>(on.unit)};
+      pair_sums sums = sum_pair(rule.divergence_, rule.table_.view(), point);
+      const double weight = static_cast<double>(rule.options_.prior);
+      if (weight > 0) {
+        const auto s1 = prior_score(on.mean * prior.first / at.first);
+        const auto s2 = prior_score(on.mean * prior.second / at.second);
+        sums.zeta += weight * (s1.value - s2.value);
+        sums.slope += weight * (s1.slope / at.first + s2.slope / at.second);
+        sums.lambda += weight * (at.first * (s1.value < 0 ? -s1.value : s1.value) +
+                                 at.second * (s2.value < 0 ? -s2.value : s2.value));
+      }
+      return sums;
+    }
+
+    PHIMIS_HOST_DEVICE score<double> prior_score(double t) const noexcept {
+      if constexpr (std::is_same<Divergence, multi_sample_variance>::value) {
+        return score_at(chi_squared{}, t);
+      } else {
+        return score_at(rule.divergence_, t);
+      }
+    }
+  };
+
+  PHIMIS_HOST_DEVICE prepared prepare() noexcept {
+    const columns<Real, 2> rows = table_.view();
+    const double drawn = static_cast<double>(drawn_[0] + drawn_[1]);
+    const Real smallest = std::numeric_limits<Real>::min() * 4;
+    const Real inverse = 1 / (largest_ > smallest ? largest_ : smallest);
+    const preparation pass{rows,
+                           table_.w(),
+                           {static_cast<Real>(static_cast<double>(drawn_[0]) / drawn),
+                            static_cast<Real>(static_cast<double>(drawn_[1]) / drawn)},
+                           inverse,
+                           minimiser_.density == sample_density::aggregate};
+    double total[3] = {};
+    detail::sum_rows<3, Real>(rows.n, pass, total);
+    const double n = static_cast<double>(rows.n);
+    prepared on{{total[0], total[1]}, {1, 1}, static_cast<double>(inverse), total[2] / n};
+    if (minimiser_.control_variate == control_variate::on) {
+      for (int k = 0; k < 2; ++k) on.kappa[k] = n / on.mass[k];
+    }
+    if (needs_mean()) {
+      on.unit /= on.mean;
+      on.mean = 1;
+    }
+    return on;
+  }
+
+  /// Only powers of t are free of the unit of f; the others want t = g/p, g = f/μ̂.
+  PHIMIS_HOST_DEVICE bool needs_mean() const noexcept {
+    if constexpr (std::is_same<Divergence, multi_sample_variance>::value) {
+      return false;
+    } else if constexpr (has_exponent<Divergence>::value) {
+      return divergence_.exponent() == 0;
+    } else {
+      return true;
+    }
+  }
+
+  PHIMIS_HOST_DEVICE static pair_fractions to_solver(const prepared& on, double first, double second) noexcept {
+    const double a1 = first / on.kappa[0];
+    const double a2 = second / on.kappa[1];
+    return {a1 / (a1 + a2), a2 / (a1 + a2)};
+  }
+
+  PHIMIS_HOST_DEVICE void set_fractions(double first, double second) noexcept {
+    this->fractions_[0] = static_cast<Real>(first);
+    this->fractions_[1] = static_cast<Real>(second);
+  }
+
+  Divergence divergence_;
+  minimiser_options minimiser_;
+  Table table_{};
+  std::int64_t drawn_[2] = {};
+  Real largest_ = 0;
+  double residual_ = 0;
+  int evaluations_ = 0;
+};
+
+}  // namespace phimis
+
+#endif  // PHIMIS_CORE_EXACT_MINIMISER_HPP

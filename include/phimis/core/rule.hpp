@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#ifndef PHIMIS_CORE_RULE_HPP
+#define PHIMIS_CORE_RULE_HPP
+
+#include <phimis/core/config.hpp>
+#include <phimis/core/fractions.hpp>
+#include <phimis/core/observation.hpp>
+
+#include <cstdint>
+
+namespace phimis {
+
+/// How the last update of a rule ended.
+enum class rule_status {
+  start,                ///< no update yet: the start fractions
+  updated,              ///< new fractions
+  local,                ///< new fractions at a local minimum of an objective that is not convex
+  no_information,       ///< every f is 0, or a technique is silent: fractions as before
+  infinite_divergence,  ///< a reversed divergence, infinite where f = 0 < p: fractions as before
+  not_converged         ///< the solver's residual stayed above its tolerance: fractions are its best
+};
+
+/// What a rule met on its way; every observation is counted once in `observations`.
+struct rule_counters {
+  std::int64_t observations = 0;
+  std::int64_t zero = 0;       ///< f = 0: observations like any other
+  std::int64_t nonfinite = 0;  ///< refused: not finite, a negative pdf, or a density of 0
+  std::int64_t dropped = 0;    ///< refused: the table was full
+  std::int64_t left = 0;       ///< iterates that left [0, 1] before they were brought back
+
+  PHIMIS_HOST_DEVICE void merge(const rule_counters& other) noexcept {
+    observations += other.observations;
+    zero += other.zero;
+    nonfinite += other.nonfinite;
+    dropped += other.dropped;
+    left += other.left;
+  }
+};
+
+/// What every rule takes: where to start, what to keep, how much to trust the start.
+///
+/// Requires start on the simplex and not below floors; floors_k >= 0, Σ floors <= 1; prior >= 0.
+template <class Real, int M>
+struct rule_options {
+  fractions<Real, M> start = equal_fractions<Real, M>();
+  /// Defensive floors: constraints inside the optimisation.
+  per_technique<Real, M> floors{};
+  /// Weight of the start fractions π in units of samples: the objective is n D(g, p(α)) + prior · D(π, α). For the
+  /// Kullback–Leibler divergence this is the Dirichlet prior of concentration prior · π.
+  Real prior = 0;
+};
+
+/// What every rule has: its options, its fractions, the status of its last update, its counters.
+template <class Real, int M>
+class rule_base {
+ public:
+  static constexpr int techniques = M;
+  using real = Real;
+
+  PHIMIS_HOST_DEVICE explicit rule_base(const rule_options<Real, M>& options) noexcept
+      : options_(options), fractions_(options.start) {}
+
+  PHIMIS_HOST_DEVICE const rule_options<Real, M>& options() const noexcept { return options_; }
+  PHIMIS_HOST_DEVICE const phimis::fractions<Real, M>& fractions() const noexcept { return fractions_; }
+  PHIMIS_HOST_DEVICE const rule_counters& counters() const noexcept { return counters_; }
+  PHIMIS_HOST_DEVICE rule_status status() const noexcept { return status_; }
+
+ protected:
+  /// Counts an observation and writes its row; false where it is refused.
+  PHIMIS_HOST_DEVICE bool admit(const observation<Real, M>& sample, row<Real, M>& out) noexcept {
+    ++counters_.observations;
+    if (!to_row(sample, out)) {
+      ++counters_.nonfinite;
+      return false;
+    }
+    if (!(out.u > 0)) ++counters_.zero;
+    return true;
+  }
+
+  rule_options<Real, M> options_;
+  phimis::fractions<Real, M> fractions_;
+  rule_counters counters_{};
+  rule_status status_ = rule_status::start;
+};
+
+/// The rule that learns nothing: its fractions are the start, equal by default.
+template <class Real, int M>
+class fixed_fractions : public rule_base<Real, M> {
+ public:
+  PHIMIS_HOST_DEVICE explicit fixed_fractions(const rule_options<Real, M>& options = {}) noexcept
+      : rule_base<Real, M>(options) {}
+
+  PHIMIS_HOST_DEVICE void observe(const observation<Real, M>& sample) noexcept {
+    row<Real, M> ignored;
+    this->admit(sample, ignored);
+  }
+  PHIMIS_HOST_DEVICE rule_status update() noexcept { return this->status_; }
+  PHIMIS_HOST_DEVICE void merge(const fixed_fractions& other) noexcept { this->counters_.merge(other.counters_); }
+};
+
+}  // namespace phimis
+
+#endif  // PHIMIS_CORE_RULE_HPP
