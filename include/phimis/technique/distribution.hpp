@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#ifndef PHIMIS_TECHNIQUE_DISTRIBUTION_HPP
+#define PHIMIS_TECHNIQUE_DISTRIBUTION_HPP
+
+#include <phimis/concepts.hpp>
+#include <phimis/technique/interval.hpp>
+
+#include <boost/math/distributions/complement.hpp>
+#include <boost/math/distributions/fwd.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace phimis {
+
+/// Any continuous distribution of Boost.Math as a technique, truncated to a domain and renormalised there.
+///
+///     p(x) = d(x) / Z inside the domain, 0 outside,   Z = D(upper) − D(lower)
+///
+/// Requires a distribution with pdf, cdf, quantile and complements, as Boost.Math's have.
+/// Errors   std::invalid_argument where the domain holds no probability.
+///
+///     phimis::distribution technique(boost::math::exponential(2.0), phimis::interval(0, 3));
+template <class Distribution>
+class distribution {
+ public:
+  explicit distribution(Distribution base, interval domain = {}) : base_(std::move(base)), domain_(domain) {
+    const auto [least, most] = boost::math::support(base_);
+    lower_ = std::max(domain.lower(), static_cast<double>(least));
+    upper_ = std::min(domain.upper(), static_cast<double>(most));
+    if (!(lower_ < upper_)) require(false, "domain", "must overlap the distribution's support", upper_);
+    // In the upper tail the complements keep the digits that the cdf loses.
+    upper_tail_ = boost::math::cdf(base_, lower_) > 0.5;
+    from_ = probability(lower_);
+    mass_ = upper_tail_ ? from_ - probability(upper_) : probability(upper_) - from_;
+    require(mass_ > 0, "domain", "must hold some of the distribution's probability", mass_);
+  }
+
+  const interval& domain() const noexcept { return domain_; }
+
+  double pdf(double x) const { return x < lower_ || x > upper_ ? 0 : boost::math::pdf(base_, x) / mass_; }
+
+  /// The point of the next uniform number, by inversion.
+  template <uniform_source Next>
+  double sample(Next&& next) const {
+    const double u = next();
+    const double x = upper_tail_ ? boost::math::quantile(boost::math::complement(base_, from_ - u * mass_))
+                                 : boost::math::quantile(base_, from_ + u * mass_);
+    return std::clamp(x, lower_, upper_);
+  }
+
+  /// The uniform number that `sample` turns into x: the cdf.
+  double invert(double x) const {
+    if (x <= lower_) return 0;
+    if (x >= upper_) return 1;
+    return (upper_tail_ ? from_ - probability(x) : probability(x) - from_) / mass_;
+  }
+
+ private:
+  double probability(double x) const {
+    return upper_tail_ ? boost::math::cdf(boost::math::complement(base_, x)) : boost::math::cdf(base_, x);
+  }
+
+  Distribution base_;
+  interval domain_;
+  double lower_ = 0;
+  double upper_ = 0;
+  double from_ = 0;
+  double mass_ = 1;
+  bool upper_tail_ = false;
+};
+
+}  // namespace phimis
+
+#endif  // PHIMIS_TECHNIQUE_DISTRIBUTION_HPP
