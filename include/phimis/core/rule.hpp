@@ -39,7 +39,7 @@ struct rule_counters {
 
 /// What every rule takes: where to start, what to keep, how much to trust the start.
 ///
-/// Requires start on the simplex and not below floors; floors_k >= 0, Σ floors <= 1; prior >= 0.
+/// Requires start on the simplex; floors_k >= 0, Σ floors <= 1; prior >= 0. A start below a floor is raised to it.
 template <class Real, int M>
 struct rule_options {
   fractions<Real, M> start = equal_fractions<Real, M>();
@@ -58,7 +58,7 @@ class rule_base {
   using real = Real;
 
   PHIMIS_HOST_DEVICE explicit rule_base(const rule_options<Real, M>& options) noexcept
-      : options_(options), fractions_(options.start) {}
+      : options_(options), fractions_(with_floors(options.start, options.floors)) {}
 
   PHIMIS_HOST_DEVICE const rule_options<Real, M>& options() const noexcept { return options_; }
   PHIMIS_HOST_DEVICE const phimis::fractions<Real, M>& fractions() const noexcept { return fractions_; }

@@ -28,7 +28,6 @@ class fixed_table {
   static constexpr int techniques = M;
 
   PHIMIS_HOST_DEVICE std::ptrdiff_t size() const noexcept { return size_; }
-  PHIMIS_HOST_DEVICE void clear() noexcept { size_ = 0; }
 
   /// False where the table is full.
   PHIMIS_HOST_DEVICE bool push(const row<Real, M>& row) noexcept {

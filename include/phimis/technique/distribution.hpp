@@ -13,6 +13,28 @@
 
 namespace phimis {
 
+namespace detail {
+
+// Boost.Math's accessors are found by their argument; members of the same name would hide them.
+template <class D>
+auto support_of(const D& d) {
+  return support(d);
+}
+template <class D>
+double pdf_of(const D& d, double x) {
+  return pdf(d, x);
+}
+template <class D>
+double cdf_of(const D& d, double x, bool upper_tail) {
+  return upper_tail ? cdf(boost::math::complement(d, x)) : cdf(d, x);
+}
+template <class D>
+double quantile_of(const D& d, double p, bool upper_tail) {
+  return upper_tail ? quantile(boost::math::complement(d, p)) : quantile(d, p);
+}
+
+}  // namespace detail
+
 /// Any continuous distribution of Boost.Math as a technique, truncated to a domain and renormalised there.
 ///
 ///     p(x) = d(x) / Z inside the domain, 0 outside,   Z = D(upper) − D(lower)
@@ -25,12 +47,12 @@ template <class Distribution>
 class distribution {
  public:
   explicit distribution(Distribution base, interval domain = {}) : base_(std::move(base)), domain_(domain) {
-    const auto [least, most] = boost::math::support(base_);
+    const auto [least, most] = detail::support_of(base_);
     lower_ = std::max(domain.lower(), static_cast<double>(least));
     upper_ = std::min(domain.upper(), static_cast<double>(most));
     if (!(lower_ < upper_)) require(false, "domain", "must overlap the distribution's support", upper_);
     // In the upper tail the complements keep the digits that the cdf loses.
-    upper_tail_ = boost::math::cdf(base_, lower_) > 0.5;
+    upper_tail_ = detail::cdf_of(base_, lower_, false) > 0.5;
     from_ = probability(lower_);
     mass_ = upper_tail_ ? from_ - probability(upper_) : probability(upper_) - from_;
     require(mass_ > 0, "domain", "must hold some of the distribution's probability", mass_);
@@ -38,14 +60,14 @@ class distribution {
 
   const interval& domain() const noexcept { return domain_; }
 
-  double pdf(double x) const { return x < lower_ || x > upper_ ? 0 : boost::math::pdf(base_, x) / mass_; }
+  double pdf(double x) const { return x < lower_ || x > upper_ ? 0 : detail::pdf_of(base_, x) / mass_; }
 
   /// The point of the next uniform number, by inversion.
   template <uniform_source Next>
   double sample(Next&& next) const {
     const double u = next();
-    const double x = upper_tail_ ? boost::math::quantile(boost::math::complement(base_, from_ - u * mass_))
-                                 : boost::math::quantile(base_, from_ + u * mass_);
+    const double p = upper_tail_ ? from_ - u * mass_ : from_ + u * mass_;
+    const double x = detail::quantile_of(base_, p, upper_tail_);
     return std::clamp(x, lower_, upper_);
   }
 
@@ -57,9 +79,7 @@ class distribution {
   }
 
  private:
-  double probability(double x) const {
-    return upper_tail_ ? boost::math::cdf(boost::math::complement(base_, x)) : boost::math::cdf(base_, x);
-  }
+  double probability(double x) const { return detail::cdf_of(base_, x, upper_tail_); }
 
   Distribution base_;
   interval domain_;
