@@ -1,0 +1,35 @@
+# Every header of the library, by target. A new header gets its line here; the test `headers.listed` says which line
+# is missing.
+
+set(PHIMIS_CORE_HEADERS
+    phimis/core.hpp
+    phimis/core/config.hpp
+    phimis/core/counts.hpp
+    phimis/core/divergence.hpp
+    phimis/core/estimator.hpp
+    phimis/core/exact_minimiser.hpp
+    phimis/core/finite.hpp
+    phimis/core/fractions.hpp
+    phimis/core/moments.hpp
+    phimis/core/newton_raphson.hpp
+    phimis/core/observation.hpp
+    phimis/core/pair_sums.hpp
+    phimis/core/rule.hpp
+    phimis/core/solve_pair.hpp
+    phimis/core/table.hpp
+    phimis/core/uniform.hpp
+    phimis/core/value.hpp
+    phimis/core/version.hpp
+    phimis/core/weight_heuristic.hpp)
+
+set(PHIMIS_UPPER_HEADERS
+    phimis/concepts.hpp
+    phimis/divergence/phi_divergence.hpp
+    phimis/error.hpp
+    phimis/quadrature/panels.hpp
+    phimis/solver/table.hpp
+    phimis/technique/density.hpp
+    phimis/technique/distribution.hpp
+    phimis/technique/gaussian.hpp
+    phimis/technique/interval.hpp
+    phimis/technique/technique_set.hpp)
