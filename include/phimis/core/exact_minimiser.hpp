@@ -153,7 +153,8 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
     PHIMIS_HOST_DEVICE pair_sums operator()(const pair_fractions& at) const noexcept {
       const pair_point<Real> point{{static_cast<Real>(at.first), static_cast<Real>(at.second)},
                                    {static_cast<Real>(on.kappa[0]), static_cast<Real>(on.kappa[1])},
-                                   static_cast<Real>(on.unit)};
+                                   static_cast<Real>(on.unit),
+                                   static_cast<double>(rule.table_.size())};
       pair_sums sums = sum_pair(rule.divergence_, rule.table_.view(), point);
       const double weight = static_cast<double>(rule.options_.prior);
       if (weight > 0) {

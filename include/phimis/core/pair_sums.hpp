@@ -17,6 +17,8 @@ namespace phimis {
 ///     −ζ' = Σ_j (p_1j − p_2j)²/(q_j p_j) t_j s'(t_j)  minus the derivative of ζ in α_1
 ///     λ  = Σ_j p_j/q_j |s(t_j)|                       the scale that a residual is relative to
 ///
+/// Where s is no power of t, its zero is arbitrary and λ is Σ p/q (|s| + t s').
+///
 /// Source T Eqs. 27–31, with the density q_j that each sample was drawn from in place of p(α).
 struct pair_sums {
   double zeta;
@@ -28,17 +30,19 @@ struct pair_sums {
 ///
 ///     t_j = unit · u_j / Σ_k α_k κ_k y_kj
 ///
-/// κ = 1, or n/Σ_j(p_kj/q_j), which makes each pdf integrate to one on the sample.
+/// κ = 1, or mass/Σ_j(p_kj/q_j), which makes each pdf integrate to one on the sample.
 template <class Real>
 struct pair_point {
   Real alpha[2];
   Real kappa[2];
   Real unit;
+  double mass;  ///< Σ_j 1/q_j: n for samples, 1 for quadrature nodes
 };
 
 namespace detail {
 
 struct power_half {
+  static constexpr bool slope_counts = false;
   template <class Real>
   PHIMIS_HOST_DEVICE score<Real> operator()(Real t) const noexcept {
     const Real root = std::sqrt(t);
@@ -46,12 +50,14 @@ struct power_half {
   }
 };
 struct power_one {
+  static constexpr bool slope_counts = false;
   template <class Real>
   PHIMIS_HOST_DEVICE score<Real> operator()(Real t) const noexcept {
     return {t, t};
   }
 };
 struct power_two {
+  static constexpr bool slope_counts = false;
   template <class Real>
   PHIMIS_HOST_DEVICE score<Real> operator()(Real t) const noexcept {
     return {t * t, 2 * t * t};
@@ -60,6 +66,7 @@ struct power_two {
 template <class Divergence>
 struct any_score {
   const Divergence& divergence;
+  bool slope_counts;
   template <class Real>
   PHIMIS_HOST_DEVICE score<Real> operator()(Real t) const noexcept {
     return score_at(divergence, t);
@@ -119,7 +126,7 @@ struct score_terms {
     const score<Real> s = score_of(unit * u[j] * r);
     sums.lane[0][l] += w[j] * d * s.value;
     sums.lane[1][l] += w[j] * d * d * r * s.slope;
-    sums.lane[2][l] += w[j] * x * (s.value < 0 ? -s.value : s.value);
+    sums.lane[2][l] += w[j] * x * ((s.value < 0 ? -s.value : s.value) + (score_of.slope_counts ? s.slope : Real(0)));
   }
 };
 
@@ -178,15 +185,17 @@ PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const column
     if (exponent == 0.5) return detail::sum_scores(detail::power_half{}, rows, at);
     if (exponent == 1) return detail::sum_scores(detail::power_one{}, rows, at);
     if (exponent == 2) return detail::sum_scores(detail::power_two{}, rows, at);
+    return detail::sum_scores(detail::any_score<Divergence>{divergence, exponent == 0}, rows, at);
+  } else {
+    return detail::sum_scores(detail::any_score<Divergence>{divergence, true}, rows, at);
   }
-  return detail::sum_scores(detail::any_score<Divergence>{divergence}, rows, at);
 }
 
 /// pair_sums of the multi-sample variance: ζ = −dV[F]/dα_1, slope = d²V[F]/dα_1², λ = Σ p/q t².
 ///
 /// With m_k = μ'_k = Σ f p_k/(p q) / n and S = Σ α_k m_k²,
 ///
-///     ζ = Σ (p_1 − p_2)/q t² + n S',   slope = 2 Σ (p_1 − p_2)²/(q p) t² − n S''
+///     ζ = Σ (p_1 − p_2)/q t² + n S',   slope = 2 Σ (p_1 − p_2)²/(q p) t² − n S'',   n = at.mass
 template <class Real>
 PHIMIS_HOST_DEVICE pair_sums sum_pair(const multi_sample_variance&, const columns<Real, 2>& rows,
                                       const pair_point<Real>& at) noexcept {
@@ -197,7 +206,7 @@ PHIMIS_HOST_DEVICE pair_sums sum_pair(const multi_sample_variance&, const column
                                            at.kappa[0], at.kappa[1],
                                            at.unit};
   detail::sum_rows<9, Real>(rows.n, terms, total);
-  const double n = static_cast<double>(rows.n);
+  const double n = at.mass;
   double s1 = 0;
   double s2 = 0;
   double m[2] = {};

@@ -7,6 +7,7 @@
 #include <phimis/core/pair_sums.hpp>
 
 #include <cmath>
+#include <limits>
 
 namespace phimis {
 
@@ -71,16 +72,18 @@ PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fract
   bool high_known = false;
   double last_step = 2;
   pair_fractions alpha = start;
-  pair_solution best{start, -1, false, 0};
+  double least = -1;  // |ζ| of the best
+  pair_solution best{start, 0, false, 0};
   while (best.evaluations < most) {
     const pair_sums at = evaluate(alpha);
     ++best.evaluations;
     const bool finite = is_finite(at.zeta) && is_finite(at.lambda);
     const double zeta = finite ? at.zeta : alpha.first < alpha.second ? 1 : -1;
-    const double residual = !finite ? 1 : at.lambda > 0 ? std::fabs(zeta) / at.lambda : std::fabs(zeta);
-    if (best.residual < 0 || residual <= best.residual) {
+    const double size = finite ? std::fabs(zeta) : std::numeric_limits<double>::max();
+    if (least < 0 || size <= least) {
+      least = size;
       best.alpha = alpha;
-      best.residual = residual;
+      best.residual = !finite ? 1 : at.lambda > 0 ? size / at.lambda : size;
     }
     if (zeta == 0) break;
 

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#ifndef PHIMIS_ANALYSIS_OPTIMUM_HPP
+#define PHIMIS_ANALYSIS_OPTIMUM_HPP
+
+#include <phimis/analysis/problem.hpp>
+#include <phimis/analysis/variance.hpp>
+#include <phimis/concepts.hpp>
+#include <phimis/core/pair_sums.hpp>
+#include <phimis/core/solve_pair.hpp>
+#include <phimis/validate.hpp>
+
+#include <boost/math/tools/roots.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace phimis::analysis {
+
+/// Fractions that are optimal in a stated sense.
+struct pair_optimum {
+  fractions<double, 2> alpha;
+  double error;     ///< of α_1, from the quadrature error of the condition over its slope; 0 at a bound
+  double residual;  ///< KKT residual relative to λ
+  bool local;       ///< the objective is not convex: this is the minimum downhill of the start
+};
+
+namespace detail {
+
+/// Where g = p(α): the kinks of total variation and of odd Pearson–Vajda divergences.
+inline std::vector<double> crossings(const problem<2>& on, const fractions<double, 2>& alpha) {
+  const auto excess = [&](double x) { return std::fabs(on.f(x)) / on.size() - mixture(alpha, on.pdfs_at(x)); };
+  std::vector<double> roots;
+  const std::vector<double>& x = on.nodes();
+  double before = excess(x[0]);
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    const double after = excess(x[i]);
+    if (before * after < 0) {
+      std::uintmax_t most = 100;
+      const auto [low, high] =
+          boost::math::tools::toms748_solve(excess, x[i - 1], x[i], before, after,
+                                            boost::math::tools::eps_tolerance<double>(), most);
+      roots.push_back(low + (high - low) / 2);
+    }
+    before = after;
+  }
+  return roots;
+}
+
+/// The integrand of ζ, where it is one.
+template <class Divergence>
+double condition(const Divergence& divergence, const problem<2>& on, double f, const per_technique<double, 2>& p,
+                 const fractions<double, 2>& alpha) {
+  const double q = mixture(alpha, p);
+  if (q == 0) return 0;
+  const double t = std::fabs(f) / (on.size() * q);
+  if constexpr (std::is_same_v<Divergence, multi_sample_variance>) {
+    return (p[0] - p[1]) * t * t;
+  } else if constexpr (phimis::detail::is_kinked<Divergence>::value) {
+    return (p[0] - p[1]);  // smooth between the kinks, where it is integrated
+  } else {
+    return (p[0] - p[1]) * score_at(divergence, t).value;
+  }
+}
+
+template <class Divergence>
+pair_optimum solve_on(const Divergence& divergence, const problem<2>& on, const rule_options<double, 2>& options,
+                      const fractions<double, 2>& from) {
+  constexpr bool kinked = phimis::detail::is_kinked<Divergence>::value;
+  const table<double, 2> rows = on.rows();
+  const auto evaluate = [&](const pair_fractions& at) {
+    const pair_point<double> point{{at.first, at.second}, {1, 1}, 1 / on.size(), 1};
+    if constexpr (kinked) {
+      const table<double, 2> split = on.split_at(crossings(on, {{at.first, at.second}})).rows();
+      return sum_pair(divergence, split.view(), point);
+    } else {
+      return sum_pair(divergence, rows.view(), point);
+    }
+  };
+  const pair_fractions low{options.floors[0], 1 - options.floors[0]};
+  const pair_fractions high{1 - options.floors[1], options.floors[1]};
+  const fractions<double, 2> start = with_floors(from, options.floors);
+  const pair_solution found = solve_pair(evaluate, low, high, {start[0], start[1]}, 1e-15);
+
+  pair_optimum result{{{found.alpha.first, found.alpha.second}},
+                      0,
+                      kinked && found.bracketed ? 0 : found.residual,
+                      std::is_same_v<Divergence, multi_sample_variance>};
+  if (found.alpha.first == low.first || found.alpha.second == high.second) return result;
+  // How far ζ may be off, over how fast it changes.
+  const double h = 1e-4 * phimis::detail::smaller(found.alpha);
+  const double above = evaluate({found.alpha.first + h, found.alpha.second - h}).zeta;
+  const double below = evaluate({found.alpha.first - h, found.alpha.second + h}).zeta;
+  const measured zeta = on.integral([&](double f, const per_technique<double, 2>& p, double) {
+    return condition(divergence, on, f, p, result.alpha);
+  });
+  result.error = zeta.error / ((below - above) / (2 * h));
+  return result;
+}
+
+}  // namespace detail
+
+/// The divergence as `divergence_at`, with the kinks of the integrand as panel edges.
+template <class Divergence>
+measured divergence_between_kinks(const Divergence& divergence, const problem<2>& on,
+                                  const fractions<double, 2>& alpha) {
+  return divergence_at(divergence, on.split_at(detail::crossings(on, alpha)), alpha);
+}
+
+/// The fractions of two techniques that minimise a divergence, or V[F], on the exact integrals.
+///
+/// The solver is that of the exact minimiser, on quadrature nodes in place of samples. Where φ has kinks the panels are
+/// split at g = p(α) for every α that it tries.
+///
+/// Source T Eqs. 16, 18, 25, 27; V[F] by multi_sample_variance.
+/// Errors std::invalid_argument as `validate`; where a reversed divergence is infinite for every α.
+template <divergence Divergence>
+pair_optimum optimum(const Divergence& divergence, const problem<2>& on, const rule_options<double, 2>& options = {}) {
+  validate(divergence);
+  validate(options);
+  const table<double, 2> rows = on.rows();
+  if (infinite_at_zero(divergence)) {
+    std::ptrdiff_t zeros = 0;
+    for (std::ptrdiff_t j = 0; j < rows.size(); ++j) zeros += rows[j].u > 0 ? 0 : 1;
+    require(zeros == 0, "divergence", "is infinite where f = 0 < p; number of such nodes", zeros);
+  }
+  pair_optimum result = detail::solve_on(divergence, on, options, options.start);
+  if (result.error > 1e-12) {
+    // Powers of f/p far from 1 need finer panels than f and p themselves: resolve the condition at the solution.
+    const fractions<double, 2> at = result.alpha;
+    const problem<2> refined = on.refined_for([&](double f, const per_technique<double, 2>& p) {
+      return detail::condition(divergence, on, f, p, at);
+    });
+    result = detail::solve_on(divergence, refined, options, at);
+  }
+  return result;
+}
+
+}  // namespace phimis::analysis
+
+#endif  // PHIMIS_ANALYSIS_OPTIMUM_HPP

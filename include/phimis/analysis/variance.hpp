@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#ifndef PHIMIS_ANALYSIS_VARIANCE_HPP
+#define PHIMIS_ANALYSIS_VARIANCE_HPP
+
+#include <phimis/analysis/problem.hpp>
+#include <phimis/core/divergence.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace phimis::analysis {
+
+/// The γ-moments.  M_{γ,k} = ∫ (|f|/p(α))^γ p_k dx
+///
+/// Source T Eq. 25.
+template <int M>
+per_technique<measured, M> gamma_moments(const problem<M>& on, double gamma, const fractions<double, M>& alpha) {
+  per_technique<measured, M> moments{};
+  for (int k = 0; k < M; ++k) {
+    moments[k] = on.integral([&](double f, const per_technique<double, M>& p, double) {
+      return f == 0 ? 0 : p[k] * std::pow(std::fabs(f) / mixture(alpha, p), gamma);
+    });
+  }
+  return moments;
+}
+
+/// Variances for N = 1 at given fractions.
+struct variances {
+  measured multi_sample;  ///< V[F]
+  measured one_sample;    ///< V[ℱ]
+  measured difference;    ///< V[ℱ] − V[F] = Σ α_k (μ'_k − μ)² ≥ 0
+};
+
+/// Exact variances of the balance heuristic.
+///
+///     V[ℱ] = ∫ (f/p(α) − μ)² p(α) dx
+///     V[F] = V[ℱ] − Σ_k α_k (μ'_k − μ)²,   μ'_k = ∫ f p_k/p(α) dx
+///
+/// Source T Eqs. 7, 9, written as sums of squares: ∫f²/p − μ² loses all digits where the variance vanishes. What a
+///        defective pdf misses counts as samples of value 0.
+/// Errors infinite where p(α) = 0 < |f|.
+template <int M>
+variances variance(const problem<M>& on, const fractions<double, M>& alpha) {
+  using pdfs = per_technique<double, M>;
+  const double mu = on.mean().value;
+  variances result{};
+  result.one_sample = on.integral([&](double f, const pdfs& p, double) {
+    const double q = mixture(alpha, p);
+    if (q == 0) return f == 0 ? 0.0 : std::numeric_limits<double>::infinity();
+    return (f / q - mu) * (f / q - mu) * q;
+  });
+  for (int k = 0; k < M; ++k) {
+    const double missing = on.missing_mass()[k];
+    measured excess = on.integral([&](double f, const pdfs& p, double) {
+      const double q = mixture(alpha, p);
+      return q == 0 ? 0.0 : p[k] * (f / q - mu);
+    });
+    excess.value -= missing * mu;
+    result.one_sample.value += alpha[k] * missing * mu * mu;
+    result.difference.value += alpha[k] * excess.value * excess.value;
+    result.difference.error += alpha[k] * (2 * std::fabs(excess.value) + excess.error) * excess.error;
+  }
+  result.multi_sample = {result.one_sample.value - result.difference.value,
+                         result.one_sample.error + result.difference.error};
+  return result;
+}
+
+/// The divergence between g = |f|/∫|f| and the mixture.  D_φ(g, p) = ∫ p(α) φ(g/p(α)) dx
+///
+/// Reversed divergences give D_φ(p, g).   Source T Eqs. 11, 21.
+template <class Divergence, int M>
+measured divergence_at(const Divergence& divergence, const problem<M>& on, const fractions<double, M>& alpha) {
+  return on.integral([&](double f, const per_technique<double, M>& p, double) {
+    const double q = mixture(alpha, p);
+    return q == 0 ? (f == 0 ? 0.0 : std::numeric_limits<double>::infinity()) : q * phi_at(divergence, std::fabs(f) / (on.size() * q));
+  });
+}
+
+}  // namespace phimis::analysis
+
+#endif  // PHIMIS_ANALYSIS_VARIANCE_HPP
