@@ -26,10 +26,16 @@ set(PHIMIS_UPPER_HEADERS
     phimis/concepts.hpp
     phimis/divergence/phi_divergence.hpp
     phimis/error.hpp
+    phimis/estimator/batch.hpp
+    phimis/estimator/combination.hpp
+    phimis/integrate.hpp
+    phimis/phimis.hpp
     phimis/quadrature/panels.hpp
+    phimis/solver/rules.hpp
     phimis/solver/table.hpp
     phimis/technique/density.hpp
     phimis/technique/distribution.hpp
     phimis/technique/gaussian.hpp
     phimis/technique/interval.hpp
-    phimis/technique/technique_set.hpp)
+    phimis/technique/technique_set.hpp
+    phimis/validate.hpp)
