@@ -9,7 +9,7 @@
 #include <phimis/core/solve_pair.hpp>
 #include <phimis/core/table.hpp>
 
-#include <cstdint>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
 
@@ -21,26 +21,16 @@ namespace phimis {
 /// removes most of the noise of the fractions, and makes a zero-variance mixture be found exactly from any sample. At
 /// the solution it is the control variate λ̂ Σ_j (p_kj/q_j − 1) with the self-normalised λ̂ = Σ(p/q)s / Σ(p/q), but the
 /// problem stays convex. It must be off where a pdf is defective (∫ p_k < 1).
+///
+/// Source the control variate is that of He & Owen 2014, for every score; as a normalisation, ours.
 enum class control_variate { on, off };
-
-/// Which density the rows are taken to be drawn from.
-enum class sample_density {
-  aggregate,  ///< q̄ = Σ_k n_k p_k / n, the mixture of all samples so far: less noise
-  own         ///< each observation's own q
-};
-
-/// What the exact minimiser takes beside the options of every rule.
-struct minimiser_options {
-  phimis::control_variate control_variate = phimis::control_variate::on;
-  phimis::sample_density density = phimis::sample_density::aggregate;
-};
 
 /// The fractions that minimise a divergence on all observations ever made, solved to a KKT certificate.
 ///
 ///     min_α Σ_j (p_j/q_j) φ(g_j/p_j) + prior · D(π, α),   α_k ≥ floor_k,   Σ α_k = 1
 ///
 /// Table     where rows are kept: fixed_table, or table, which grows.
-/// Requires  two techniques; observations whose `technique` is the one that drew them, where the density is aggregate.
+/// Requires  two techniques; each observation with the density q_j that it was drawn from, however long ago.
 /// Errors    `status()`; `residual()` is the KKT residual relative to λ.
 /// Cost      an update reads all rows 5 to 10 times, with one division a row.
 ///
@@ -52,9 +42,9 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
  public:
   using Real = typename Table::real;
 
-  explicit exact_minimiser(const Divergence& divergence = {}, const rule_options<Real, 2>& options = {},
-                           const minimiser_options& minimiser = {}) noexcept
-      : rule_base<Real, 2>(options), divergence_(divergence), minimiser_(minimiser) {}
+  PHIMIS_HOST_DEVICE explicit exact_minimiser(const Divergence& divergence = {}, const rule_options<Real, 2>& options = {},
+                           phimis::control_variate variate = control_variate::on) noexcept
+      : rule_base<Real, 2>(options), divergence_(divergence), variate_(variate) {}
 
   PHIMIS_HOST_DEVICE const Divergence& divergence() const noexcept { return divergence_; }
   PHIMIS_HOST_DEVICE const Table& table() const noexcept { return table_; }
@@ -63,10 +53,6 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, 2>& sample) {
     row<Real, 2> row;
-    if (minimiser_.density == sample_density::aggregate) {
-      PHIMIS_EXPECTS(sample.technique == 0 || sample.technique == 1);
-      ++drawn_[sample.technique];
-    }
     if (!this->admit(sample, row)) return;
     if (!table_.push(row)) {
       ++this->counters_.dropped;
@@ -113,7 +99,6 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
   /// Adds the observations of another state; fractions stay until the next update.
   PHIMIS_HOST_DEVICE void merge(const exact_minimiser& other) {
     this->counters_.merge(other.counters_);
-    for (int k = 0; k < 2; ++k) drawn_[k] += other.drawn_[k];
     for (std::ptrdiff_t j = 0; j < other.table_.size(); ++j) {
       if (!table_.push(other.table_[j])) ++this->counters_.dropped;
     }
@@ -128,19 +113,14 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
     double mean;      // Σ_j f_j/q_j / n in that unit
   };
 
-  struct preparation {
+  /// One row's terms of the masses and of the mean.
+  struct mass_terms {
     const columns<Real, 2>& rows;
-    Real* w;
-    Real share[2];
     Real inverse;
-    bool aggregate;
     PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, int l, detail::lane_sums<Real, 3>& sums) const noexcept {
-      const Real y1 = rows.y[0][j];
-      const Real y2 = rows.y[1][j];
-      if (aggregate) w[j] = 1 / (share[0] * y1 + share[1] * y2);
-      sums.lane[0][l] += w[j] * y1;
-      sums.lane[1][l] += w[j] * y2;
-      sums.lane[2][l] += w[j] * (rows.u[j] * inverse);
+      sums.lane[0][l] += rows.w[j] * rows.y[0][j];
+      sums.lane[1][l] += rows.w[j] * rows.y[1][j];
+      sums.lane[2][l] += rows.w[j] * (rows.u[j] * inverse);
     }
   };
 
@@ -179,20 +159,13 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
 
   PHIMIS_HOST_DEVICE prepared prepare() noexcept {
     const columns<Real, 2> rows = table_.view();
-    const double drawn = static_cast<double>(drawn_[0] + drawn_[1]);
     const Real smallest = std::numeric_limits<Real>::min() * 4;
     const Real inverse = 1 / (largest_ > smallest ? largest_ : smallest);
-    const preparation pass{rows,
-                           table_.w(),
-                           {static_cast<Real>(static_cast<double>(drawn_[0]) / drawn),
-                            static_cast<Real>(static_cast<double>(drawn_[1]) / drawn)},
-                           inverse,
-                           minimiser_.density == sample_density::aggregate};
     double total[3] = {};
-    detail::sum_rows<3, Real>(rows.n, pass, total);
+    detail::sum_rows<3, Real>(rows.n, mass_terms{rows, inverse}, total);
     const double n = static_cast<double>(rows.n);
     prepared on{{total[0], total[1]}, {1, 1}, static_cast<double>(inverse), total[2] / n};
-    if (minimiser_.control_variate == control_variate::on) {
+    if (variate_ == control_variate::on) {
       for (int k = 0; k < 2; ++k) on.kappa[k] = n / on.mass[k];
     }
     if (needs_mean()) {
@@ -225,9 +198,8 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
   }
 
   Divergence divergence_;
-  minimiser_options minimiser_;
+  phimis::control_variate variate_;
   Table table_{};
-  std::int64_t drawn_[2] = {};
   Real largest_ = 0;
   double residual_ = 0;
   int evaluations_ = 0;

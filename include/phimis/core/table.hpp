@@ -51,9 +51,6 @@ class fixed_table {
     return view;
   }
 
-  /// The column w, for those who know a better density than the one each sample was drawn from.
-  PHIMIS_HOST_DEVICE Real* w() noexcept { return w_; }
-
  private:
   std::ptrdiff_t size_ = 0;
   Real u_[Capacity];

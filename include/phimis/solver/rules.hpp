@@ -36,10 +36,10 @@ newton_raphson<Divergence, Real> newton_rule(const Divergence& divergence,
 template <divergence Divergence, class Real = double>
 exact_minimiser<Divergence, table<Real, 2>> exact_rule(const Divergence& divergence,
                                                        const rule_options<Real, 2>& options = {},
-                                                       const minimiser_options& minimiser = {}) {
+                                                       control_variate variate = control_variate::on) {
   validate(divergence);
   validate(options);
-  return exact_minimiser<Divergence, table<Real, 2>>(divergence, options, minimiser);
+  return exact_minimiser<Divergence, table<Real, 2>>(divergence, options, variate);
 }
 
 }  // namespace phimis

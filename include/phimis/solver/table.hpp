@@ -40,9 +40,6 @@ class table {
     return view;
   }
 
-  /// The column w, for those who know a better density than the one each sample was drawn from.
-  Real* w() noexcept { return w_.data(); }
-
  private:
   std::vector<Real> u_;
   std::vector<Real> w_;
