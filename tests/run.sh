@@ -1,0 +1,71 @@
+#!/bin/sh
+# Runs the tests from a fresh clone: installs what is missing, runs the workflow of every preset with tests, then the
+# quick reproduction. The last line counts the tests of all.
+set -u
+
+usage="usage: tests/run.sh [--fast]
+
+  --fast   only the preset dev: g++, no sanitizers, no reproduction
+  --help   this"
+
+presets="dev dev-clang sanitize"
+reproduce=yes
+for option; do
+  case $option in
+    --fast) presets=dev reproduce= ;;
+    --help) echo "$usage"; exit 0 ;;
+    *) echo "tests/run.sh: unknown option '$option'; --help lists them" >&2; exit 2 ;;
+  esac
+done
+
+cd "$(dirname "$0")/.." || exit 1
+sh cmake/install_packages.sh tests || exit 1
+jobs=$(getconf _NPROCESSORS_ONLN)
+export CMAKE_BUILD_PARALLEL_LEVEL="$jobs" CTEST_PARALLEL_LEVEL="$jobs"
+
+passed=0
+failed=0
+summary=
+
+# number_of failures build/dev/tests.xml: that attribute of the JUnit file's first element.
+number_of() {
+  tr '\n' ' ' <"$2" | sed "s/<testcase.*//; s/.* $1=\"\([0-9]*\)\".*/\1/" | tr -d -c 0-9
+}
+
+for preset in $presets; do
+  results=build/$preset/tests.xml
+  rm -f "$results"
+  echo "== $preset"
+  begin=$(date +%s)
+  status=0
+  cmake --workflow --preset "$preset" </dev/null || status=$?
+  if [ -f "$results" ]; then
+    bad=$(number_of failures "$results")
+    good=$(($(number_of tests "$results") - bad - $(number_of skipped "$results") - $(number_of disabled "$results")))
+    # CTest fails, too, where a test could not be run at all.
+    if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then bad=1; fi
+  else
+    echo "tests/run.sh: preset $preset was not built" >&2
+    good=0 bad=1
+  fi
+  passed=$((passed + good))
+  failed=$((failed + bad))
+  summary="$summary$preset: $good passed, $bad failed, $(($(date +%s) - begin)) s
+"
+done
+
+if [ -n "$reproduce" ]; then
+  echo "== reproduction"
+  begin=$(date +%s)
+  good=1
+  sh examples/reproduce.sh --quick </dev/null || good=0
+  passed=$((passed + good))
+  failed=$((failed + 1 - good))
+  summary="${summary}reproduction: $good passed, $((1 - good)) failed, $(($(date +%s) - begin)) s
+"
+fi
+
+echo "== summary"
+printf '%s' "$summary"
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
