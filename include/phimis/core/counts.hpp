@@ -6,6 +6,7 @@
 #include <phimis/core/fractions.hpp>
 
 #include <cstdint>
+#include <limits>
 
 namespace phimis {
 
@@ -30,7 +31,8 @@ PHIMIS_HOST_DEVICE counts<M> split_largest_remainder(const fractions<Real, M>& a
     const double share = static_cast<double>(alpha[k]) * static_cast<double>(budget);
     n[k] = static_cast<std::int64_t>(share);
     if (n[k] > left) n[k] = left;
-    remainder[k] = share - static_cast<double>(n[k]);
+    // Where Σα rounds to less than one, what is left must not go to a technique without a fraction.
+    remainder[k] = alpha[k] > 0 ? share - static_cast<double>(n[k]) : -std::numeric_limits<double>::max();
     left -= n[k];
     if (alpha[k] > 0) ++positive;
   }
