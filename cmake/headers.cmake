@@ -23,6 +23,9 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/weight_heuristic.hpp)
 
 set(PHIMIS_UPPER_HEADERS
+    phimis/analysis/optimum.hpp
+    phimis/analysis/problem.hpp
+    phimis/analysis/variance.hpp
     phimis/concepts.hpp
     phimis/divergence/phi_divergence.hpp
     phimis/error.hpp

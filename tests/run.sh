@@ -29,7 +29,7 @@ summary=
 
 # number_of failures build/dev/tests.xml: that attribute of the JUnit file's first element.
 number_of() {
-  tr '\n' ' ' <"$2" | sed "s/<testcase.*//; s/.* $1=\"\([0-9]*\)\".*/\1/" | tr -d -c 0-9
+  sed -n "/<testcase/q; s/^[[:space:]]*$1=\"\([0-9]*\)\".*/\1/p" "$2"
 }
 
 for preset in $presets; do
