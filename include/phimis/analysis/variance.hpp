@@ -49,6 +49,14 @@ variances variance(const problem<M>& on, const fractions<double, M>& alpha) {
     if (q == 0) return f == 0 ? 0.0 : std::numeric_limits<double>::infinity();
     return (f / q - mu) * (f / q - mu) * q;
   });
+  // The rounding of f/p and μ, which is all that is left where the variance vanishes.
+  constexpr double rounding = 1e-15;
+  result.one_sample.error += on.integral([&](double f, const pdfs& p, double) {
+    const double q = mixture(alpha, p);
+    if (q == 0) return 0.0;
+    const double error = rounding * (std::fabs(f / q) + std::fabs(mu));
+    return (2 * std::fabs(f / q - mu) + error) * error * q;
+  }).value;
   for (int k = 0; k < M; ++k) {
     const double missing = on.missing_mass()[k];
     measured excess = on.integral([&](double f, const pdfs& p, double) {
@@ -57,6 +65,7 @@ variances variance(const problem<M>& on, const fractions<double, M>& alpha) {
     });
     excess.value -= missing * mu;
     result.one_sample.value += alpha[k] * missing * mu * mu;
+    if (missing != 0) result.one_sample.error += alpha[k] * rounding * mu * mu;
     result.difference.value += alpha[k] * excess.value * excess.value;
     result.difference.error += alpha[k] * (2 * std::fabs(excess.value) + excess.error) * excess.error;
   }
