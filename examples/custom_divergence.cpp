@@ -8,26 +8,25 @@
 #include <cstdio>
 #include <numbers>
 
-// A divergence of your own: one generic lambda φ, convex with φ(1) = 0, that calls log, exp, pow without std::, so that
-// it can be differentiated. Here the Jensen-Shannon divergence of f/μ and the mixture p(α),
+// A divergence of your own: one generic lambda φ, convex with φ(1) = 0, that calls log, exp, pow without std::, so
+// that it can be differentiated. Here the Jensen-Shannon divergence of f/μ and the mixture p(α),
 //
 //     JS = ∫ p φ(f/(μ p)) dx,   φ(t) = ½ (t log t − (1 + t) log((1 + t)/2))
 //
 int main(int argc, char**) {
   if (argc > 1) {
-    std::puts("usage: custom_divergence\nLearns fractions by a user's own divergence and compares them with the exact ones.");
+    std::puts("usage: custom_divergence\nLearns fractions by a divergence of the user's own.");
     return 0;
   }
-  const phimis::phi_divergence jensen_shannon(
-      [](auto t) { return (t * log(t) - (1 + t) * log((1 + t) / 2)) / 2; });
+  const phimis::phi_divergence jensen_shannon([](auto t) { return (t * log(t) - (1 + t) * log((1 + t) / 2)) / 2; });
 
   const auto f = [](double x) { return std::sqrt(x) + std::sin(x); };
   const phimis::interval domain(0.01, 3.5 * std::numbers::pi);
   const phimis::technique_set techniques(phimis::gaussian(2, 1, domain), phimis::gaussian(8, 2, domain));
 
   // Learnt from samples, and the same on exact integrals.
-  const auto learnt =
-      phimis::integrate(f, techniques, {.budget = 20000}, phimis::exact_rule(jensen_shannon, {.floors = {0.01, 0.01}}));
+  const auto learnt = phimis::integrate(f, techniques, {.budget = 20000},
+                                        phimis::exact_rule(jensen_shannon, {.floors = {0.01, 0.01}}));
   const phimis::analysis::problem on(f, techniques, domain);
   const auto exact = phimis::analysis::optimum(jensen_shannon, on);
 

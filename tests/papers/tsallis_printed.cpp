@@ -45,11 +45,10 @@ problem as_printed(Paper paper, First first, Second second) {
 
 const problem& printed_example(int n) {
   using namespace papers;
-  static const problem all[] = {
-      as_printed(tsallis_1{}, whole_gaussian{2, 1}, whole_gaussian{8, 2}),
-      as_printed(tsallis_2{}, whole_gaussian{-1.5, 1}, whole_gaussian{1.5, 0.75}),
-      as_printed(tsallis_3{}, printed_function{[](double x) { return 2 - x; }},
-                 printed_function{[](double x) { return std::sin(x) * std::sin(x); }})};
+  static const problem all[] = {as_printed(tsallis_1{}, whole_gaussian{2, 1}, whole_gaussian{8, 2}),
+                                as_printed(tsallis_2{}, whole_gaussian{-1.5, 1}, whole_gaussian{1.5, 0.75}),
+                                as_printed(tsallis_3{}, printed_function{[](double x) { return 2 - x; }},
+                                           printed_function{[](double x) { return std::sin(x) * std::sin(x); }})};
   return all[n - 1];
 }
 

@@ -50,7 +50,8 @@ TEST_CASE("The optimum of a variance is the least of its values on a dense grid 
   for (int n = 1; n <= 3; ++n) {
     const double multi =
         variance(example(n), optimum(phimis::multi_sample_variance{}, example(n)).alpha).multi_sample.value;
-    const double one = variance(example(n), optimum(phimis::one_sample_variance{}, example(n)).alpha).one_sample.value;
+    const double one =
+        variance(example(n), optimum(phimis::one_sample_variance{}, example(n)).alpha).one_sample.value;
     for (int i = 1; i < 1000; ++i) {
       const double alpha = i / 1000.0;
       CAPTURE(n, alpha);
