@@ -72,6 +72,17 @@ bool counts_what_is_not_finite(Real infinity, Real nan) {
   return rule.counters().nonfinite == 5 && estimator.nonfinite() == 3 && estimator.estimate() == 0;
 }
 
+// Where f = 0 < p, some reversed divergences are infinite; -ffast-math must not hide it.
+template <class Divergence, class Real>
+bool reports_infinity() {
+  phimis::exact_minimiser<Divergence, phimis::fixed_table<Real, 2, 4>> rule;
+  rule.observe({1, {{1, 2}}, 1, 0});
+  rule.observe({0, {{2, 1}}, 1, 1});
+  if (rule.update() == phimis::rule_status::infinite_divergence) return true;
+  std::printf("%s: not reported\n", __PRETTY_FUNCTION__);
+  return false;
+}
+
 template <class Real>
 bool all_of(Real infinity, Real nan) {
   bool good = finds_the_optimum<phimis::kullback_leibler, Real>({});
@@ -82,6 +93,9 @@ bool all_of(Real infinity, Real nan) {
   good = finds_the_optimum<phimis::total_variation, Real>({}) && good;
   good = finds_the_optimum<phimis::multi_sample_variance, Real>({}) && good;
   good = newton_steps_towards_it<Real>() && good;
+  good = reports_infinity<phimis::reversed<phimis::kullback_leibler>, Real>() && good;
+  good = reports_infinity<phimis::reversed<phimis::chi_squared>, Real>() && good;
+  good = reports_infinity<phimis::reversed<phimis::pearson_vajda>, Real>() && good;
   if (!counts_what_is_not_finite(infinity, nan)) {
     std::puts("a number that is not finite entered a sum");
     good = false;
