@@ -9,6 +9,8 @@
 #include <boost/math/distributions/fwd.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace phimis {
@@ -22,7 +24,11 @@ auto support_of(const D& d) {
 }
 template <class D>
 double pdf_of(const D& d, double x) {
-  return pdf(d, x);
+  try {
+    return pdf(d, x);
+  } catch (const std::overflow_error&) {  // how Boost.Math says infinity: a beta distribution at its ends
+    return std::numeric_limits<double>::infinity();
+  }
 }
 template <class D>
 double cdf_of(const D& d, double x, bool upper_tail) {
@@ -60,13 +66,16 @@ class distribution {
 
   const interval& domain() const noexcept { return domain_; }
 
-  double pdf(double x) const { return x < lower_ || x > upper_ ? 0 : detail::pdf_of(base_, x) / mass_; }
+  /// 0 outside the domain, also where x is NaN; infinite where the density is.
+  double pdf(double x) const { return x >= lower_ && x <= upper_ ? detail::pdf_of(base_, x) / mass_ : 0; }
 
   /// The point of the next uniform number, by inversion.
   template <uniform_source Next>
   double sample(Next&& next) const {
-    const double u = next();
-    const double p = upper_tail_ ? from_ - u * mass_ : from_ + u * mass_;
+    // Neither u = 0 nor rounding to p = 1 may ask for the quantile at infinity: 0 stands for the cell [0, 2^-53).
+    const double u = std::max(static_cast<double>(next()), 0x1p-54);
+    const double p = std::clamp(upper_tail_ ? from_ - u * mass_ : from_ + u * mass_,
+                                std::numeric_limits<double>::min(), 1 - std::numeric_limits<double>::epsilon() / 2);
     const double x = detail::quantile_of(base_, p, upper_tail_);
     return std::clamp(x, lower_, upper_);
   }
