@@ -18,7 +18,7 @@ using phimis::rule_status;
 template <class Real>
 using observations = std::vector<phimis::observation<Real, 2>>;
 
-double f(double x) { return 0.2 + x * x * (2 - x); }
+double f(double x) { return 0.6 + 0.8 * x * x; }
 
 /// α_1 after one step, from the formulas of the paper and of the control variate, in long double.
 ///
