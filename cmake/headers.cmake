@@ -10,6 +10,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/exact_minimiser.hpp
     phimis/core/finite.hpp
     phimis/core/fractions.hpp
+    phimis/core/limits.hpp
     phimis/core/moments.hpp
     phimis/core/newton_raphson.hpp
     phimis/core/observation.hpp

@@ -10,6 +10,7 @@
 #include <phimis/core/exact_minimiser.hpp>
 #include <phimis/core/finite.hpp>
 #include <phimis/core/fractions.hpp>
+#include <phimis/core/limits.hpp>
 #include <phimis/core/moments.hpp>
 #include <phimis/core/newton_raphson.hpp>
 #include <phimis/core/observation.hpp>

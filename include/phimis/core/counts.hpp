@@ -6,7 +6,6 @@
 #include <phimis/core/fractions.hpp>
 
 #include <cstdint>
-#include <limits>
 
 namespace phimis {
 
@@ -32,7 +31,7 @@ PHIMIS_HOST_DEVICE counts<M> split_largest_remainder(const fractions<Real, M>& a
     n[k] = static_cast<std::int64_t>(share);
     if (n[k] > left) n[k] = left;
     // Where Σα rounds to less than one, what is left must not go to a technique without a fraction.
-    remainder[k] = alpha[k] > 0 ? share - static_cast<double>(n[k]) : -std::numeric_limits<double>::max();
+    remainder[k] = alpha[k] > 0 ? share - static_cast<double>(n[k]) : -1e300;
     left -= n[k];
     if (alpha[k] > 0) ++positive;
   }

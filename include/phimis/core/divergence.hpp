@@ -3,9 +3,10 @@
 #define PHIMIS_CORE_DIVERGENCE_HPP
 
 #include <phimis/core/config.hpp>
+#include <phimis/core/finite.hpp>
+#include <phimis/core/limits.hpp>
 
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace phimis {
@@ -189,10 +190,19 @@ PHIMIS_HOST_DEVICE score<Real> forward_score(const Divergence& divergence, Real 
   return {t * phi.first - phi.value, t * t * phi.second};
 }
 
+/// The slope of φ at infinity, which is −s(0) of the reversed divergence; infinite where it still grows over 14 decades.
+template <class Divergence>
+PHIMIS_HOST_DEVICE double slope_at_infinity(const Divergence& divergence) noexcept {
+  const double near = divergence.taylor(1e14).first;
+  const double far = divergence.taylor(1e28).first;
+  return is_finite(far) && std::fabs(far - near) <= 1e-6 * (1 + std::fabs(far)) ? far : infinity<double>;
+}
+
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE score<Real> reversed_score(const Divergence& divergence, Real t) noexcept {
+  if (!(t > 0)) return {static_cast<Real>(-slope_at_infinity(divergence)), 0};
   const phi_taylor<Real> phi = divergence.taylor(1 / t);
-  return {-phi.first, t > 0 ? phi.second / t : Real(0)};
+  return {-phi.first, phi.second / t};
 }
 
 }  // namespace detail
@@ -226,14 +236,13 @@ PHIMIS_HOST_DEVICE Real phi_at(const Divergence& divergence, Real t) noexcept {
 }
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE Real phi_at(const reversed<Divergence>& divergence, Real t) noexcept {
-  // φ*(0) is the slope of φ at infinity, which is −s(0); the power family's lies in its limit.
   if (t > 0) return t * phi_at(divergence.forward, 1 / t);
   if constexpr (has_exponent<Divergence>::value) {
     const double gamma = divergence.forward.exponent();
     const Real scale = std::is_same<Divergence, hellinger>::value ? Real(0.5) : Real(1);
-    return gamma < 1 ? scale / static_cast<Real>(1 - gamma) : std::numeric_limits<Real>::infinity();
+    return gamma < 1 ? scale / static_cast<Real>(1 - gamma) : infinity<Real>;
   } else {
-    return -score_at(divergence, t).value;
+    return static_cast<Real>(detail::slope_at_infinity(divergence.forward));
   }
 }
 
@@ -242,12 +251,18 @@ PHIMIS_HOST_DEVICE Real phi_at(const reversed<Divergence>& divergence, Real t) n
 /// A rule then reports `rule_status::infinite_divergence` and leaves its fractions.
 template <class Divergence>
 PHIMIS_HOST_DEVICE bool infinite_at_zero(const Divergence& divergence) noexcept {
-  if constexpr (std::is_same<Divergence, multi_sample_variance>::value) {
+  if constexpr (has_exponent<Divergence>::value || std::is_same<Divergence, multi_sample_variance>::value) {
     return false;
-  } else if constexpr (has_exponent<Divergence>::value) {
+  } else {
+    return !is_finite(divergence.taylor(0.0).value);
+  }
+}
+template <class Divergence>
+PHIMIS_HOST_DEVICE bool infinite_at_zero(const reversed<Divergence>& divergence) noexcept {
+  if constexpr (has_exponent<Divergence>::value) {
     return divergence.exponent() <= 0;
   } else {
-    return score_at(divergence, 0.0).value == -std::numeric_limits<double>::infinity();
+    return !is_finite(detail::slope_at_infinity(divergence.forward));
   }
 }
 

@@ -4,13 +4,13 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/limits.hpp>
 #include <phimis/core/pair_sums.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/solve_pair.hpp>
 #include <phimis/core/table.hpp>
 
 #include <cstddef>
-#include <limits>
 #include <type_traits>
 
 namespace phimis {
@@ -76,8 +76,8 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
     const pair_fractions start = to_solver(on, this->fractions_[0], this->fractions_[1]);
     const pair_fractions prior = to_solver(on, this->options_.start[0], this->options_.start[1]);
     const problem evaluate{*this, on, prior};
-    constexpr double epsilon = 4 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-    const pair_solution solution = solve_pair(evaluate, low, high, start, epsilon);
+    constexpr double rounding = epsilon<Real>;
+    const pair_solution solution = solve_pair(evaluate, low, high, start, 4 * rounding);
     evaluations_ = solution.evaluations;
     residual_ = detail::is_kinked<Divergence>::value && solution.bracketed ? 0 : solution.residual;
 
@@ -90,8 +90,7 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
       const double second = solution.alpha.second * on.kappa[1];
       set_fractions(first / (first + second), second / (first + second));
     }
-    constexpr double tolerance = 1e4 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-    if (residual_ > tolerance) return this->status_ = rule_status::not_converged;
+    if (residual_ > 1e4 * rounding) return this->status_ = rule_status::not_converged;
     return this->status_ = std::is_same<Divergence, multi_sample_variance>::value ? rule_status::local
                                                                                     : rule_status::updated;
   }
@@ -117,7 +116,7 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
   struct mass_terms {
     const columns<Real, 2>& rows;
     Real inverse;
-    PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, int l, detail::lane_sums<Real, 3>& sums) const noexcept {
+    PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, std::ptrdiff_t l, detail::lane_sums<Real, 3>& sums) const noexcept {
       sums.lane[0][l] += rows.w[j] * rows.y[0][j];
       sums.lane[1][l] += rows.w[j] * rows.y[1][j];
       sums.lane[2][l] += rows.w[j] * (rows.u[j] * inverse);
@@ -159,7 +158,7 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
 
   PHIMIS_HOST_DEVICE prepared prepare() noexcept {
     const columns<Real, 2> rows = table_.view();
-    const Real smallest = std::numeric_limits<Real>::min() * 4;
+    constexpr Real smallest = 4 * smallest_normal<Real>;
     const Real inverse = 1 / (largest_ > smallest ? largest_ : smallest);
     double total[3] = {};
     detail::sum_rows<3, Real>(rows.n, mass_terms{rows, inverse}, total);

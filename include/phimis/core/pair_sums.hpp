@@ -41,134 +41,157 @@ struct pair_point {
 
 namespace detail {
 
-struct power_half {
-  static constexpr bool slope_counts = false;
-  template <class Real>
-  PHIMIS_HOST_DEVICE score<Real> operator()(Real t) const noexcept {
-    const Real root = std::sqrt(t);
-    return {root, root / 2};
-  }
-};
-struct power_one {
-  static constexpr bool slope_counts = false;
-  template <class Real>
-  PHIMIS_HOST_DEVICE score<Real> operator()(Real t) const noexcept {
-    return {t, t};
-  }
-};
-struct power_two {
-  static constexpr bool slope_counts = false;
-  template <class Real>
-  PHIMIS_HOST_DEVICE score<Real> operator()(Real t) const noexcept {
-    return {t * t, 2 * t * t};
-  }
-};
-template <class Divergence>
-struct any_score {
-  const Divergence& divergence;
-  bool slope_counts;
-  template <class Real>
-  PHIMIS_HOST_DEVICE score<Real> operator()(Real t) const noexcept {
-    return score_at(divergence, t);
-  }
-};
-
 /// Rows are summed in independent lanes, which compilers turn into vectors without reordering a sum, and blocks of
 /// rows are added in double: rounding grows with the block, not with n.
-inline constexpr int lanes = 16;
-inline constexpr std::ptrdiff_t rows_per_block = 64 * lanes;
+inline constexpr std::ptrdiff_t lanes = 16;
 
-/// N sums over rows. add(j, lane) adds row j to the lane's own accumulators.
+/// N sums over rows, lane by lane.
 template <class Real, int N>
 struct lane_sums {
   Real lane[N][lanes] = {};
-
-  PHIMIS_HOST_DEVICE void flush(double* total) noexcept {
-    for (int i = 0; i < N; ++i) {
-      double sum = 0;
-      for (int l = 0; l < lanes; ++l) {
-        sum += static_cast<double>(lane[i][l]);
-        lane[i][l] = 0;
-      }
-      total[i] += sum;
-    }
-  }
 };
 
+/// add_row(j, lane, sums) adds row j to the lane's own accumulators.
 template <int N, class Real, class AddRow>
 PHIMIS_HOST_DEVICE void sum_rows(std::ptrdiff_t n, const AddRow& add_row, double (&total)[N]) noexcept {
-  for (std::ptrdiff_t begin = 0; begin < n; begin += rows_per_block) {
-    const std::ptrdiff_t end = begin + rows_per_block < n ? begin + rows_per_block : n;
+  constexpr std::ptrdiff_t block = 64 * lanes;
+  for (std::ptrdiff_t begin = 0; begin < n; begin += block) {
+    const std::ptrdiff_t end = begin + block < n ? begin + block : n;
     lane_sums<Real, N> sums;
     std::ptrdiff_t j = begin;
     for (; j + lanes <= end; j += lanes) {
-      for (int l = 0; l < lanes; ++l) add_row(j + l, l, sums);
+      for (std::ptrdiff_t l = 0; l < lanes; ++l) add_row(j + l, l, sums);
     }
-    for (int l = 0; j < end; ++j, ++l) add_row(j, l, sums);
-    sums.flush(total);
+    for (std::ptrdiff_t l = 0; l < end - j; ++l) add_row(j + l, l, sums);
+    for (int i = 0; i < N; ++i) {
+      Real* lane = sums.lane[i];
+      for (std::ptrdiff_t half = lanes / 2; half > 0; half /= 2) {
+        for (std::ptrdiff_t l = 0; l < half; ++l) lane[l] += lane[l + half];
+      }
+      total[i] += static_cast<double>(lane[0]);
+    }
   }
 }
 
-/// One row's terms of pair_sums.
-template <class Real, class Score>
-struct score_terms {
-  const Real* u;
-  const Real* w;
-  const Real* y1;
-  const Real* y2;
-  Real b1, b2, k1, k2, unit;
-  const Score& score_of;
-
-  PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, int l, lane_sums<Real, 3>& sums) const noexcept {
-    const Real x = b1 * y1[j] + b2 * y2[j];
-    const Real d = k1 * y1[j] - k2 * y2[j];
-    const Real r = u[j] > 0 ? 1 / x : Real(0);  // f = 0: t = 0 even where the mixture vanishes
-    const score<Real> s = score_of(unit * u[j] * r);
-    sums.lane[0][l] += w[j] * d * s.value;
-    sums.lane[1][l] += w[j] * d * d * r * s.slope;
-    sums.lane[2][l] += w[j] * x * ((s.value < 0 ? -s.value : s.value) + (score_of.slope_counts ? s.slope : Real(0)));
+/// p s/q of one row in the power family, w x t^β with t = u/x. Where s/t is simple, no power of t is formed.
+struct power_half {
+  template <class Real>
+  PHIMIS_HOST_DEVICE Real operator()(Real w, Real u, Real x, Real) const noexcept {
+    return w * std::sqrt(u * x);
+  }
+};
+struct power_one {
+  template <class Real>
+  PHIMIS_HOST_DEVICE Real operator()(Real w, Real u, Real, Real) const noexcept {
+    return w * u;
+  }
+};
+struct power_two {
+  template <class Real>
+  PHIMIS_HOST_DEVICE Real operator()(Real w, Real u, Real, Real r) const noexcept {
+    return w * u * (u * r);
+  }
+};
+template <class Real>
+struct power_any {
+  Real beta;
+  PHIMIS_HOST_DEVICE Real operator()(Real w, Real u, Real x, Real r) const noexcept {
+    return w * x * std::pow(u * r, beta);
   }
 };
 
-template <class Real, class Score>
-PHIMIS_HOST_DEVICE pair_sums sum_scores(const Score& score_of, const columns<Real, 2>& rows,
+/// One row's mixture and difference of pdfs.
+template <class Real>
+struct pair_row {
+  columns<Real, 2> rows;
+  Real b1, b2, k1, k2, unit;
+
+  PHIMIS_HOST_DEVICE pair_row(const columns<Real, 2>& all, const pair_point<Real>& at) noexcept
+      : rows(all),
+        b1(at.alpha[0] * at.kappa[0]),
+        b2(at.alpha[1] * at.kappa[1]),
+        k1(at.kappa[0]),
+        k2(at.kappa[1]),
+        unit(at.unit) {}
+
+  /// p(α)/Σp, kept from 0: where the mixture and f both vanish, f/p is 0.
+  PHIMIS_HOST_DEVICE Real x(std::ptrdiff_t j) const noexcept {
+    constexpr Real tiny = sizeof(Real) == 8 ? Real(1e-300) : Real(1e-37);
+    return b1 * rows.y[0][j] + b2 * rows.y[1][j] + tiny;
+  }
+  /// (p_1 − p_2)/Σp
+  PHIMIS_HOST_DEVICE Real d(std::ptrdiff_t j) const noexcept { return k1 * rows.y[0][j] - k2 * rows.y[1][j]; }
+  PHIMIS_HOST_DEVICE Real u(std::ptrdiff_t j) const noexcept { return unit * rows.u[j]; }
+  PHIMIS_HOST_DEVICE Real w(std::ptrdiff_t j) const noexcept { return rows.w[j]; }
+};
+
+/// One row's terms of pair_sums in the power family, without the factors of s and t s'.
+template <class Real, class Power>
+struct power_terms : pair_row<Real> {
+  Power power;
+
+  PHIMIS_HOST_DEVICE power_terms(const pair_row<Real>& row, const Power& p) noexcept
+      : pair_row<Real>(row), power(p) {}
+
+  PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, std::ptrdiff_t l, lane_sums<Real, 3>& sums) const noexcept {
+    const Real x = this->x(j);
+    const Real r = 1 / x;
+    const Real e = this->d(j) * r;
+    const Real v = power(this->w(j), this->u(j), x, r);
+    sums.lane[0][l] += v * e;
+    sums.lane[1][l] += v * e * e;
+    sums.lane[2][l] += v;
+  }
+};
+
+template <class Real, class Power>
+PHIMIS_HOST_DEVICE pair_sums sum_powers(const Power& power, double exponent, const columns<Real, 2>& rows,
                                         const pair_point<Real>& at) noexcept {
   double total[3] = {};
-  const score_terms<Real, Score> terms{rows.u,      rows.w,      rows.y[0],
-                                       rows.y[1],   at.alpha[0] * at.kappa[0], at.alpha[1] * at.kappa[1],
-                                       at.kappa[0], at.kappa[1], at.unit,
-                                       score_of};
-  sum_rows<3, Real>(rows.n, terms, total);
-  return {total[0], total[1], total[2]};
+  sum_rows<3, Real>(rows.n, power_terms<Real, Power>(pair_row<Real>(rows, at), power), total);
+  return {exponent < 0 ? -total[0] : total[0], std::fabs(exponent) * total[1], total[2]};
 }
+
+/// One row's terms of pair_sums for any score.
+template <class Real, class Divergence>
+struct score_terms : pair_row<Real> {
+  const Divergence& divergence;
+
+  PHIMIS_HOST_DEVICE score_terms(const pair_row<Real>& row, const Divergence& d) noexcept
+      : pair_row<Real>(row), divergence(d) {}
+
+  PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, std::ptrdiff_t l, lane_sums<Real, 3>& sums) const noexcept {
+    const Real x = this->x(j);
+    const Real e = this->d(j) / x;
+    const Real wx = this->w(j) * x;
+    const score<Real> s = score_at(divergence, this->u(j) / x);
+    sums.lane[0][l] += wx * e * s.value;
+    sums.lane[1][l] += wx * e * e * s.slope;
+    sums.lane[2][l] += wx * ((s.value < 0 ? -s.value : s.value) + s.slope);
+  }
+};
 
 /// One row's terms of dV[F]/dα and its derivative.
 template <class Real>
-struct variance_terms {
-  const Real* u;
-  const Real* w;
-  const Real* y1;
-  const Real* y2;
-  Real b1, b2, k1, k2, unit;
+struct variance_terms : pair_row<Real> {
+  PHIMIS_HOST_DEVICE explicit variance_terms(const pair_row<Real>& row) noexcept : pair_row<Real>(row) {}
 
-  PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, int l, lane_sums<Real, 9>& sums) const noexcept {
-    const Real x = b1 * y1[j] + b2 * y2[j];
-    const Real d = k1 * y1[j] - k2 * y2[j];
-    const Real r = u[j] > 0 ? 1 / x : Real(0);
-    const Real t = unit * u[j] * r;
-    const Real s1 = k1 * y1[j] * r;  // p_k/p
-    const Real s2 = k2 * y2[j] * r;
-    const Real e = d * r;
-    const Real ft = w[j] * x * t;  // f/q
-    sums.lane[0][l] += ft * t * e;
-    sums.lane[1][l] += ft * t * e * e;
-    sums.lane[2][l] += ft * t;
-    sums.lane[3][l] += ft * s1;
-    sums.lane[4][l] += ft * s2;
-    sums.lane[5][l] += ft * s1 * e;
-    sums.lane[6][l] += ft * s2 * e;
-    sums.lane[7][l] += ft * s1 * e * e;
-    sums.lane[8][l] += ft * s2 * e * e;
+  PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, std::ptrdiff_t l, lane_sums<Real, 9>& sums) const noexcept {
+    const Real r = 1 / this->x(j);
+    const Real e = this->d(j) * r;
+    const Real s1 = this->k1 * this->rows.y[0][j] * r;  // p_k/p
+    const Real s2 = this->k2 * this->rows.y[1][j] * r;
+    const Real v = this->w(j) * this->u(j);  // f/q
+    const Real vt = v * (this->u(j) * r);
+    sums.lane[0][l] += vt * e;
+    sums.lane[1][l] += vt * e * e;
+    sums.lane[2][l] += vt;
+    sums.lane[3][l] += v * s1;
+    sums.lane[4][l] += v * s2;
+    sums.lane[5][l] += v * s1 * e;
+    sums.lane[6][l] += v * s2 * e;
+    sums.lane[7][l] += v * s1 * e * e;
+    sums.lane[8][l] += v * s2 * e * e;
   }
 };
 
@@ -182,13 +205,17 @@ PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const column
                                       const pair_point<Real>& at) noexcept {
   if constexpr (has_exponent<Divergence>::value) {
     const double exponent = divergence.exponent();
-    if (exponent == 0.5) return detail::sum_scores(detail::power_half{}, rows, at);
-    if (exponent == 1) return detail::sum_scores(detail::power_one{}, rows, at);
-    if (exponent == 2) return detail::sum_scores(detail::power_two{}, rows, at);
-    return detail::sum_scores(detail::any_score<Divergence>{divergence, exponent == 0}, rows, at);
-  } else {
-    return detail::sum_scores(detail::any_score<Divergence>{divergence, true}, rows, at);
+    if (exponent == 0.5) return detail::sum_powers(detail::power_half{}, exponent, rows, at);
+    if (exponent == 1) return detail::sum_powers(detail::power_one{}, exponent, rows, at);
+    if (exponent == 2) return detail::sum_powers(detail::power_two{}, exponent, rows, at);
+    if (exponent != 0) {
+      return detail::sum_powers(detail::power_any<Real>{static_cast<Real>(exponent)}, exponent, rows, at);
+    }
   }
+  double total[3] = {};
+  const detail::score_terms<Real, Divergence> terms(detail::pair_row<Real>(rows, at), divergence);
+  detail::sum_rows<3, Real>(rows.n, terms, total);
+  return {total[0], total[1], total[2]};
 }
 
 /// pair_sums of the multi-sample variance: ζ = −dV[F]/dα_1, slope = d²V[F]/dα_1², λ = Σ p/q t².
@@ -200,12 +227,7 @@ template <class Real>
 PHIMIS_HOST_DEVICE pair_sums sum_pair(const multi_sample_variance&, const columns<Real, 2>& rows,
                                       const pair_point<Real>& at) noexcept {
   double total[9] = {};
-  const detail::variance_terms<Real> terms{rows.u,      rows.w,
-                                           rows.y[0],   rows.y[1],
-                                           at.alpha[0] * at.kappa[0], at.alpha[1] * at.kappa[1],
-                                           at.kappa[0], at.kappa[1],
-                                           at.unit};
-  detail::sum_rows<9, Real>(rows.n, terms, total);
+  detail::sum_rows<9, Real>(rows.n, detail::variance_terms<Real>(detail::pair_row<Real>(rows, at)), total);
   const double n = at.mass;
   double s1 = 0;
   double s2 = 0;

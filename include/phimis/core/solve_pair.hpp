@@ -4,10 +4,10 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/finite.hpp>
+#include <phimis/core/limits.hpp>
 #include <phimis/core/pair_sums.hpp>
 
 #include <cmath>
-#include <limits>
 
 namespace phimis {
 
@@ -79,7 +79,7 @@ PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fract
     ++best.evaluations;
     const bool finite = is_finite(at.zeta) && is_finite(at.lambda);
     const double zeta = finite ? at.zeta : alpha.first < alpha.second ? 1 : -1;
-    const double size = finite ? std::fabs(zeta) : std::numeric_limits<double>::max();
+    const double size = finite ? std::fabs(zeta) : 1 / smallest_normal<double>;
     if (least < 0 || size <= least) {
       least = size;
       best.alpha = alpha;

@@ -31,17 +31,8 @@ class phi_divergence {
 
   template <class Real>
   phi_taylor<Real> taylor(Real t) const {
-    constexpr double largest = std::numeric_limits<double>::max();
     phi_taylor<double> at = derivatives(static_cast<double>(t));
-    if (!(t > 0)) {
-      if (std::isnan(at.value)) at.value = derivatives(std::numeric_limits<double>::min()).value;
-    } else if (!(static_cast<double>(t) <= largest)) {
-      // The slope at infinity: where it still grows over 150 decades it is taken as infinite.
-      const double near = derivatives(1e150).first;
-      const double far = derivatives(1e300).first;
-      const bool finite = std::fabs(far - near) <= 1e-6 * (1 + std::fabs(far));
-      at = {at.value, finite ? far : std::copysign(std::numeric_limits<double>::infinity(), far), 0};
-    }
+    if (!(t > 0) && std::isnan(at.value)) at.value = derivatives(std::numeric_limits<double>::min()).value;
     return {static_cast<Real>(at.value), static_cast<Real>(at.first), static_cast<Real>(at.second)};
   }
 
