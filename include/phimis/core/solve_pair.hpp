@@ -40,15 +40,19 @@ PHIMIS_HOST_DEVICE inline double distance(const pair_fractions& a, const pair_fr
   return b.second < 0.5 ? a.second - b.second : b.first - a.first;
 }
 
-/// A point between a and b that halves the interval, in ratio where it spans many orders of magnitude.
+/// A fraction between two others whose orders of magnitude differ: at 0 there is none, and some decades are gone down.
+PHIMIS_HOST_DEVICE inline double between_orders(double small, double large) noexcept {
+  return small > 0 ? std::sqrt(small) * std::sqrt(large) : 1e-4 * large;
+}
+
+/// A point between a and b that halves the interval, in its logarithm where it spans orders of magnitude.
 PHIMIS_HOST_DEVICE inline pair_fractions between(const pair_fractions& a, const pair_fractions& b) noexcept {
-  constexpr double tiny = 1e-300;
   if (b.first <= 0.5 && a.first < 1e-3 * b.first) {
-    const double middle = std::sqrt((a.first > tiny ? a.first : tiny) * b.first);
+    const double middle = between_orders(a.first, b.first);
     return {middle, 1 - middle};
   }
   if (a.second <= 0.5 && b.second < 1e-3 * a.second) {
-    const double middle = std::sqrt((b.second > tiny ? b.second : tiny) * a.second);
+    const double middle = between_orders(b.second, a.second);
     return {1 - middle, middle};
   }
   return {(a.first + b.first) / 2, (a.second + b.second) / 2};
@@ -101,7 +105,7 @@ PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fract
     if (best.bracketed) break;
 
     const double step = at.zeta / at.slope;
-    const bool newton = finite && at.slope > 0 && is_finite(step);
+    const bool newton = finite && at.slope > 0 && is_finite(at.slope) && is_finite(step);
     if (newton && std::fabs(step) <= resolution) break;
     // Newton's step is taken while it halves and stays inside; otherwise an unseen end, then the middle.
     pair_fractions next = detail::shifted(alpha, newton ? step : 0);
