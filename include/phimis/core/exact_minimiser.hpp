@@ -53,12 +53,7 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, 2>& sample) {
     row<Real, 2> row;
-    if (!this->admit(sample, row)) return;
-    if (!table_.push(row)) {
-      ++this->counters_.dropped;
-      return;
-    }
-    if (row.u > largest_) largest_ = row.u;
+    if (this->admit(sample, row)) keep(row);
   }
 
   PHIMIS_HOST_DEVICE rule_status update() noexcept {
@@ -98,13 +93,18 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
   /// Adds the observations of another state; fractions stay until the next update.
   PHIMIS_HOST_DEVICE void merge(const exact_minimiser& other) {
     this->counters_.merge(other.counters_);
-    for (std::ptrdiff_t j = 0; j < other.table_.size(); ++j) {
-      if (!table_.push(other.table_[j])) ++this->counters_.dropped;
-    }
-    if (other.largest_ > largest_) largest_ = other.largest_;
+    for (std::ptrdiff_t j = 0; j < other.table_.size(); ++j) keep(other.table_[j]);
   }
 
  private:
+  PHIMIS_HOST_DEVICE void keep(const row<Real, 2>& row) {
+    if (!table_.push(row)) {
+      ++this->counters_.dropped;
+    } else if (row.u > largest_) {
+      largest_ = row.u;
+    }
+  }
+
   struct prepared {
     double mass[2];   // Σ_j p_kj/q_j
     double kappa[2];  // 1, or n/mass: what each pdf is multiplied by
