@@ -155,7 +155,7 @@ TEMPLATE_TEST_CASE("A unit of the measure changes no step", "", float, double) {
   for (const int exponent : {-60, 60}) CHECK(learn(std::ldexp(TestType(1), exponent)) == learn(1));
 }
 
-TEMPLATE_TEST_CASE("Merged states are one state, in any grouping", "", float, double) {
+TEMPLATE_TEST_CASE("Merged batches are one batch, in any grouping", "", float, double) {
   const auto all = two_triangles::observe<TestType>([](double x) { return x < 0.1 ? 0 : f(x); }, 0.4, 100, 1);
   const TestType tolerance = 200 * std::numeric_limits<TestType>::epsilon();
   random_numbers random(2);
