@@ -22,12 +22,12 @@ namespace phimis {
 template <class Heuristic, class Value, class Real, int M>
 PHIMIS_HOST_DEVICE Value contribution(const Heuristic& heuristic, int k, const Value& f,
                                       const fractions<Real, M>& alpha, const per_technique<Real, M>& pdfs) {
-  return f * (heuristic(k, alpha, pdfs) / (alpha[k] * pdfs[k]));
+  return f * static_cast<typename value_traits<Value>::real>(heuristic(k, alpha, pdfs) / (alpha[k] * pdfs[k]));
 }
 template <class Value, class Real, int M>
 PHIMIS_HOST_DEVICE Value contribution(const balance&, int, const Value& f, const fractions<Real, M>& alpha,
                                       const per_technique<Real, M>& pdfs) {
-  return f * (Real(1) / mixture(alpha, pdfs));
+  return f * static_cast<typename value_traits<Value>::real>(Real(1) / mixture(alpha, pdfs));
 }
 
 /// How the technique of a sample is chosen.
