@@ -18,7 +18,7 @@ per_technique<measured, M> gamma_moments(const problem<M>& on, double gamma, con
   per_technique<measured, M> moments{};
   for (int k = 0; k < M; ++k) {
     moments[k] = on.integral([&](double f, const per_technique<double, M>& p, double) {
-      return f == 0 ? 0 : p[k] * std::pow(std::fabs(f) / mixture(alpha, p), gamma);
+      return f == 0 || p[k] == 0 ? 0 : p[k] * std::pow(std::fabs(f) / mixture(alpha, p), gamma);
     });
   }
   return moments;
