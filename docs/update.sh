@@ -1,0 +1,62 @@
+#!/bin/sh
+# Fills in what the documentation includes: code after `<!-- from: FILE -->`, what a program prints after
+# `<!-- output: COMMAND -->`, each up to the line `<!-- end -->`. Programs come from the release preset.
+set -eu
+
+usage="usage: docs/update.sh [--check]
+
+  --check   changes nothing and runs no program: fails where included code differs from its file
+  --help    this"
+
+check=
+for option; do
+  case $option in
+    --check) check=yes ;;
+    --help) echo "$usage"; exit 0 ;;
+    *) echo "docs/update.sh: unknown option '$option'; --help lists them" >&2; exit 2 ;;
+  esac
+done
+cd "$(dirname "$0")/.."
+
+fill() {
+  while IFS= read -r line; do
+    printf '%s\n' "$line"
+    case $line in
+      '<!-- from: '*)
+        file=${line#'<!-- from: '} file=${file%' -->'}
+        skip_old=yes
+        printf '```cpp\n'; grep -v '^// \(SPDX\|test:\)' "$file"; printf '```\n' ;;
+      '<!-- output: '*)
+        if [ -n "$check" ]; then
+          skip_old=
+        else
+          command=${line#'<!-- output: '} command=${command%' -->'}
+          skip_old=yes
+          sh -c "$command"
+        fi ;;
+      *) skip_old= ;;
+    esac
+    [ -z "$skip_old" ] || while IFS= read -r line && [ "$line" != '<!-- end -->' ]; do :; done
+    [ -z "$skip_old" ] || printf '%s\n' '<!-- end -->'
+  done <"$1"
+}
+
+status=0
+for page in README.md docs/policies.md docs/speed.md; do
+  [ -f "$page" ] || continue
+  filled=$(mktemp)
+  fill "$page" >"$filled"
+  if cmp -s "$filled" "$page"; then
+    rm -f "$filled"
+  elif [ -n "$check" ]; then
+    echo "docs/update.sh: $page differs from what it includes; run docs/update.sh" >&2
+    diff "$page" "$filled" >&2 || true
+    rm -f "$filled"
+    status=1
+  else
+    cat "$filled" >"$page"
+    rm -f "$filled"
+    echo "updated $page"
+  fi
+done
+exit $status
