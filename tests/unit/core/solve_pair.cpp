@@ -4,6 +4,7 @@
 
 #include <phimis/core/solve_pair.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -140,6 +141,22 @@ TEST_CASE("A step is bracketed to its last digit") {
         CHECK(std::fabs(small - root) <= 2 * epsilon * root);
         CHECK(found.evaluations <= 100);
       }
+    }
+  }
+}
+
+TEST_CASE("Rounding of the height of a step does not keep a point that is further from it") {
+  for (const double root : {1e-6, 0.126193, 0.75}) {
+    for (const double start : {0.0, 1e-9, 0.5, 0.999, 1.0}) {
+      INFO("root " << root << ", start " << start);
+      random_numbers random(3);
+      const auto step = [&](const pair_fractions& alpha) {
+        const double height = 1 + 1e-15 * random.between(-1, 1);
+        return pair_sums{alpha.first < root ? height : -2 * height, 0, 1};
+      };
+      const auto found = phimis::solve_pair(step, zero, one, {start, 1 - start}, epsilon);
+      CHECK(found.bracketed);
+      CHECK(std::fabs(found.alpha.first - root) <= 2 * epsilon * std::min(root, 1 - root));
     }
   }
 }
