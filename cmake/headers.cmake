@@ -33,6 +33,7 @@ set(PHIMIS_UPPER_HEADERS
     phimis/estimator/batch.hpp
     phimis/estimator/combination.hpp
     phimis/integrate.hpp
+    phimis/interval.hpp
     phimis/phimis.hpp
     phimis/quadrature/panels.hpp
     phimis/solver/rules.hpp
@@ -40,6 +41,5 @@ set(PHIMIS_UPPER_HEADERS
     phimis/technique/density.hpp
     phimis/technique/distribution.hpp
     phimis/technique/gaussian.hpp
-    phimis/technique/interval.hpp
     phimis/technique/technique_set.hpp
     phimis/validate.hpp)

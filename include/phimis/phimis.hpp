@@ -10,12 +10,12 @@
 #include <phimis/estimator/batch.hpp>
 #include <phimis/estimator/combination.hpp>
 #include <phimis/integrate.hpp>
+#include <phimis/interval.hpp>
 #include <phimis/solver/rules.hpp>
 #include <phimis/solver/table.hpp>
 #include <phimis/technique/density.hpp>
 #include <phimis/technique/distribution.hpp>
 #include <phimis/technique/gaussian.hpp>
-#include <phimis/technique/interval.hpp>
 #include <phimis/technique/technique_set.hpp>
 #include <phimis/validate.hpp>
 

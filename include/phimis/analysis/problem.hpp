@@ -5,9 +5,9 @@
 #include <phimis/core/fractions.hpp>
 #include <phimis/core/observation.hpp>
 #include <phimis/error.hpp>
+#include <phimis/interval.hpp>
 #include <phimis/quadrature/panels.hpp>
 #include <phimis/solver/table.hpp>
-#include <phimis/technique/interval.hpp>
 #include <phimis/technique/technique_set.hpp>
 
 #include <array>

@@ -3,7 +3,7 @@
 #define PHIMIS_QUADRATURE_PANELS_HPP
 
 #include <phimis/error.hpp>
-#include <phimis/technique/interval.hpp>
+#include <phimis/interval.hpp>
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>

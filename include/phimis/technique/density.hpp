@@ -3,8 +3,8 @@
 #define PHIMIS_TECHNIQUE_DENSITY_HPP
 
 #include <phimis/concepts.hpp>
+#include <phimis/interval.hpp>
 #include <phimis/quadrature/panels.hpp>
-#include <phimis/technique/interval.hpp>
 
 #include <boost/math/tools/roots.hpp>
 

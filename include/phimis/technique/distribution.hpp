@@ -3,7 +3,7 @@
 #define PHIMIS_TECHNIQUE_DISTRIBUTION_HPP
 
 #include <phimis/concepts.hpp>
-#include <phimis/technique/interval.hpp>
+#include <phimis/interval.hpp>
 
 #include <boost/math/distributions/complement.hpp>
 #include <boost/math/distributions/fwd.hpp>

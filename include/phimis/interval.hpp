@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#ifndef PHIMIS_TECHNIQUE_INTERVAL_HPP
-#define PHIMIS_TECHNIQUE_INTERVAL_HPP
+#ifndef PHIMIS_INTERVAL_HPP
+#define PHIMIS_INTERVAL_HPP
 
 #include <phimis/error.hpp>
 
@@ -31,4 +31,4 @@ class interval {
 
 }  // namespace phimis
 
-#endif  // PHIMIS_TECHNIQUE_INTERVAL_HPP
+#endif  // PHIMIS_INTERVAL_HPP
