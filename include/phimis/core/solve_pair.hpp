@@ -84,10 +84,11 @@ PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fract
     const bool finite = is_finite(at.zeta) && is_finite(at.lambda);
     const double zeta = finite ? at.zeta : alpha.first < alpha.second ? 1 : -1;
     const double size = finite ? std::fabs(zeta) : 1 / smallest_normal<double>;
+    const double residual = !finite ? 1 : at.lambda > 0 ? size / at.lambda : size;
     if (least < 0 || size <= least) {
       least = size;
       best.alpha = alpha;
-      best.residual = !finite ? 1 : at.lambda > 0 ? size / at.lambda : size;
+      best.residual = residual;
     }
     if (zeta == 0) break;
 
@@ -102,7 +103,12 @@ PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fract
     (zeta > 0 ? low_known : high_known) = true;
     const double resolution = epsilon * detail::smaller(alpha);
     best.bracketed = low_known && high_known && detail::distance(low, high) <= resolution;
-    if (best.bracketed) break;
+    if (best.bracketed) {
+      // On a step of ζ the size says nothing about the distance.
+      best.alpha = alpha;
+      best.residual = residual;
+      break;
+    }
 
     const double step = at.zeta / at.slope;
     const bool newton = finite && at.slope > 0 && is_finite(at.slope) && is_finite(step);
