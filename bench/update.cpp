@@ -40,9 +40,12 @@ phimis::table<Real, 2> some_rows(std::ptrdiff_t n) {
 template <class Real>
 Real read_and_divide(const phimis::columns<Real, 2>& rows) {
   struct terms {
-    const phimis::columns<Real, 2>& rows;
-    void operator()(std::ptrdiff_t j, std::ptrdiff_t l, phimis::detail::lane_sums<Real, 1>& sums) const noexcept {
-      sums.lane[0][l] += rows.w[j] * rows.u[j] / (rows.y[0][j] + rows.y[1][j]);
+    static constexpr bool packed = true;
+    phimis::columns<Real, 2> rows;
+    template <class V>
+    void add(std::ptrdiff_t j, V (&sums)[1]) const noexcept {
+      using phimis::detail::load;
+      sums[0] += load<V>(rows.w + j) * load<V>(rows.u + j) / (load<V>(rows.y[0] + j) + load<V>(rows.y[1] + j));
     }
   };
   double total[1] = {};

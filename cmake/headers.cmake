@@ -14,6 +14,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/moments.hpp
     phimis/core/newton_raphson.hpp
     phimis/core/observation.hpp
+    phimis/core/pack.hpp
     phimis/core/pair_sums.hpp
     phimis/core/rule.hpp
     phimis/core/solve_pair.hpp

@@ -14,6 +14,7 @@
 #include <phimis/core/moments.hpp>
 #include <phimis/core/newton_raphson.hpp>
 #include <phimis/core/observation.hpp>
+#include <phimis/core/pack.hpp>
 #include <phimis/core/pair_sums.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/solve_pair.hpp>

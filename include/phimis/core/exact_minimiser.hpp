@@ -5,6 +5,7 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/limits.hpp>
+#include <phimis/core/pack.hpp>
 #include <phimis/core/pair_sums.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/solve_pair.hpp>
@@ -112,14 +113,18 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
     double mean;      // Σ_j f_j/q_j / n in that unit
   };
 
-  /// One row's terms of the masses and of the mean.
+  /// Terms of the masses and of the mean.
   struct mass_terms {
-    const columns<Real, 2>& rows;
+    static constexpr bool packed = true;
+    columns<Real, 2> rows;
     Real inverse;
-    PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, std::ptrdiff_t l, detail::lane_sums<Real, 3>& sums) const noexcept {
-      sums.lane[0][l] += rows.w[j] * rows.y[0][j];
-      sums.lane[1][l] += rows.w[j] * rows.y[1][j];
-      sums.lane[2][l] += rows.w[j] * (rows.u[j] * inverse);
+
+    template <class V>
+    PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[3]) const noexcept {
+      const V w = detail::load<V>(rows.w + j);
+      sums[0] += w * detail::load<V>(rows.y[0] + j);
+      sums[1] += w * detail::load<V>(rows.y[1] + j);
+      sums[2] += w * (detail::load<V>(rows.u + j) * inverse);
     }
   };
 

@@ -4,6 +4,7 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/pack.hpp>
 #include <phimis/core/table.hpp>
 
 #include <cmath>
@@ -41,72 +42,44 @@ struct pair_point {
 
 namespace detail {
 
-/// Rows are summed in independent lanes, which compilers turn into vectors without reordering a sum, and blocks of
-/// rows are added in double: rounding grows with the block, not with n.
-inline constexpr std::ptrdiff_t lanes = 16;
-
-/// N sums over rows, lane by lane.
-template <class Real, int N>
-struct lane_sums {
-  Real lane[N][lanes] = {};
-};
-
-/// add_row(j, lane, sums) adds row j to the lane's own accumulators.
-template <int N, class Real, class AddRow>
-PHIMIS_HOST_DEVICE void sum_rows(std::ptrdiff_t n, const AddRow& add_row, double (&total)[N]) noexcept {
-  constexpr std::ptrdiff_t block = 64 * lanes;
-  for (std::ptrdiff_t begin = 0; begin < n; begin += block) {
-    const std::ptrdiff_t end = begin + block < n ? begin + block : n;
-    lane_sums<Real, N> sums;
-    std::ptrdiff_t j = begin;
-    for (; j + lanes <= end; j += lanes) {
-      for (std::ptrdiff_t l = 0; l < lanes; ++l) add_row(j + l, l, sums);
-    }
-    for (std::ptrdiff_t l = 0; l < end - j; ++l) add_row(j + l, l, sums);
-    for (int i = 0; i < N; ++i) {
-      Real* lane = sums.lane[i];
-      for (std::ptrdiff_t half = lanes / 2; half > 0; half /= 2) {
-        for (std::ptrdiff_t l = 0; l < half; ++l) lane[l] += lane[l + half];
-      }
-      total[i] += static_cast<double>(lane[0]);
-    }
-  }
-}
-
-/// p s/q of one row in the power family, w x t^β with t = u/x. Where s/t is simple, no power of t is formed.
+/// p s/q of one row in the power family, w x t^β with t = u/x, r = 1/x. Where s/t is simple, no power of t is formed.
 struct power_half {
-  template <class Real>
-  PHIMIS_HOST_DEVICE Real operator()(Real w, Real u, Real x, Real) const noexcept {
-    return w * std::sqrt(u * x);
+  static constexpr bool packed = true;
+  template <class Real, class V>
+  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V& x, const V&) const noexcept {
+    return w * square_root<Real>(u * x);
   }
 };
 struct power_one {
-  template <class Real>
-  PHIMIS_HOST_DEVICE Real operator()(Real w, Real u, Real, Real) const noexcept {
+  static constexpr bool packed = true;
+  template <class Real, class V>
+  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V&, const V&) const noexcept {
     return w * u;
   }
 };
 struct power_two {
-  template <class Real>
-  PHIMIS_HOST_DEVICE Real operator()(Real w, Real u, Real, Real r) const noexcept {
+  static constexpr bool packed = true;
+  template <class Real, class V>
+  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V&, const V& r) const noexcept {
     return w * u * (u * r);
   }
 };
-template <class Real>
 struct power_any {
-  Real beta;
-  PHIMIS_HOST_DEVICE Real operator()(Real w, Real u, Real x, Real r) const noexcept {
-    return w * x * std::pow(u * r, beta);
+  static constexpr bool packed = false;
+  double beta;
+  template <class Real, class V>
+  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V& x, const V& r) const noexcept {
+    return w * x * std::pow(u * r, static_cast<Real>(beta));
   }
 };
 
-/// One row's mixture and difference of pdfs.
+/// A row, or a pack of rows, at a point.
 template <class Real>
-struct pair_row {
+struct pair_rows {
   columns<Real, 2> rows;
   Real b1, b2, k1, k2, unit;
 
-  PHIMIS_HOST_DEVICE pair_row(const columns<Real, 2>& all, const pair_point<Real>& at) noexcept
+  PHIMIS_HOST_DEVICE pair_rows(const columns<Real, 2>& all, const pair_point<Real>& at) noexcept
       : rows(all),
         b1(at.alpha[0] * at.kappa[0]),
         b2(at.alpha[1] * at.kappa[1]),
@@ -114,33 +87,45 @@ struct pair_row {
         k2(at.kappa[1]),
         unit(at.unit) {}
 
-  /// p(α)/Σp, kept from 0: where the mixture and f both vanish, f/p is 0.
-  PHIMIS_HOST_DEVICE Real x(std::ptrdiff_t j) const noexcept {
+  template <class V>
+  struct row {
+    V y1, y2;
+    V x;  // p(α)/Σp, kept from 0: where the mixture and f both vanish, f/p is 0
+    V d;  // (p_1 − p_2)/Σp
+    V u, w;
+  };
+
+  template <class V>
+  PHIMIS_HOST_DEVICE row<V> at(std::ptrdiff_t j) const noexcept {
     constexpr Real tiny = sizeof(Real) == 8 ? Real(1e-300) : Real(1e-37);
-    return b1 * rows.y[0][j] + b2 * rows.y[1][j] + tiny;
+    const V y1 = load<V>(rows.y[0] + j);
+    const V y2 = load<V>(rows.y[1] + j);
+    return {y1,
+            y2,
+            b1 * y1 + b2 * y2 + tiny,
+            k1 * y1 - k2 * y2,
+            unit * load<V>(rows.u + j),
+            load<V>(rows.w + j)};
   }
-  /// (p_1 − p_2)/Σp
-  PHIMIS_HOST_DEVICE Real d(std::ptrdiff_t j) const noexcept { return k1 * rows.y[0][j] - k2 * rows.y[1][j]; }
-  PHIMIS_HOST_DEVICE Real u(std::ptrdiff_t j) const noexcept { return unit * rows.u[j]; }
-  PHIMIS_HOST_DEVICE Real w(std::ptrdiff_t j) const noexcept { return rows.w[j]; }
 };
 
-/// One row's terms of pair_sums in the power family, without the factors of s and t s'.
+/// Terms of pair_sums in the power family, without the factors of s and t s'.
 template <class Real, class Power>
-struct power_terms : pair_row<Real> {
+struct power_terms {
+  static constexpr bool packed = Power::packed;
+  pair_rows<Real> rows;
   Power power;
 
-  PHIMIS_HOST_DEVICE power_terms(const pair_row<Real>& row, const Power& p) noexcept
-      : pair_row<Real>(row), power(p) {}
-
-  PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, std::ptrdiff_t l, lane_sums<Real, 3>& sums) const noexcept {
-    const Real x = this->x(j);
-    const Real r = 1 / x;
-    const Real e = this->d(j) * r;
-    const Real v = power(this->w(j), this->u(j), x, r);
-    sums.lane[0][l] += v * e;
-    sums.lane[1][l] += v * e * e;
-    sums.lane[2][l] += v;
+  template <class V>
+  PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[3]) const noexcept {
+    const auto row = rows.template at<V>(j);
+    const V r = Real(1) / row.x;
+    const V e = row.d * r;
+    const V v = power.template term<Real>(row.w, row.u, row.x, r);
+    const V ve = v * e;
+    sums[0] += ve;
+    sums[1] += ve * e;
+    sums[2] += v;
   }
 };
 
@@ -148,50 +133,53 @@ template <class Real, class Power>
 PHIMIS_HOST_DEVICE pair_sums sum_powers(const Power& power, double exponent, const columns<Real, 2>& rows,
                                         const pair_point<Real>& at) noexcept {
   double total[3] = {};
-  sum_rows<3, Real>(rows.n, power_terms<Real, Power>(pair_row<Real>(rows, at), power), total);
+  sum_rows<3, Real>(rows.n, power_terms<Real, Power>{pair_rows<Real>(rows, at), power}, total);
   return {exponent < 0 ? -total[0] : total[0], std::fabs(exponent) * total[1], total[2]};
 }
 
-/// One row's terms of pair_sums for any score.
+/// Terms of pair_sums for any score.
 template <class Real, class Divergence>
-struct score_terms : pair_row<Real> {
+struct score_terms {
+  static constexpr bool packed = false;
+  pair_rows<Real> rows;
   const Divergence& divergence;
 
-  PHIMIS_HOST_DEVICE score_terms(const pair_row<Real>& row, const Divergence& d) noexcept
-      : pair_row<Real>(row), divergence(d) {}
-
-  PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, std::ptrdiff_t l, lane_sums<Real, 3>& sums) const noexcept {
-    const Real x = this->x(j);
-    const Real e = this->d(j) / x;
-    const Real wx = this->w(j) * x;
-    const score<Real> s = score_at(divergence, this->u(j) / x);
-    sums.lane[0][l] += wx * e * s.value;
-    sums.lane[1][l] += wx * e * e * s.slope;
-    sums.lane[2][l] += wx * ((s.value < 0 ? -s.value : s.value) + s.slope);
+  template <class V>
+  PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[3]) const noexcept {
+    const auto row = rows.template at<V>(j);
+    const V e = row.d / row.x;
+    const V wx = row.w * row.x;
+    const score<Real> s = score_at(divergence, row.u / row.x);
+    sums[0] += wx * e * s.value;
+    sums[1] += wx * e * e * s.slope;
+    sums[2] += wx * ((s.value < 0 ? -s.value : s.value) + s.slope);
   }
 };
 
-/// One row's terms of dV[F]/dα and its derivative.
+/// Terms of dV[F]/dα and its derivative.
 template <class Real>
-struct variance_terms : pair_row<Real> {
-  PHIMIS_HOST_DEVICE explicit variance_terms(const pair_row<Real>& row) noexcept : pair_row<Real>(row) {}
+struct variance_terms {
+  static constexpr bool packed = true;
+  pair_rows<Real> rows;
 
-  PHIMIS_HOST_DEVICE void operator()(std::ptrdiff_t j, std::ptrdiff_t l, lane_sums<Real, 9>& sums) const noexcept {
-    const Real r = 1 / this->x(j);
-    const Real e = this->d(j) * r;
-    const Real s1 = this->k1 * this->rows.y[0][j] * r;  // p_k/p
-    const Real s2 = this->k2 * this->rows.y[1][j] * r;
-    const Real v = this->w(j) * this->u(j);  // f/q
-    const Real vt = v * (this->u(j) * r);
-    sums.lane[0][l] += vt * e;
-    sums.lane[1][l] += vt * e * e;
-    sums.lane[2][l] += vt;
-    sums.lane[3][l] += v * s1;
-    sums.lane[4][l] += v * s2;
-    sums.lane[5][l] += v * s1 * e;
-    sums.lane[6][l] += v * s2 * e;
-    sums.lane[7][l] += v * s1 * e * e;
-    sums.lane[8][l] += v * s2 * e * e;
+  template <class V>
+  PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[9]) const noexcept {
+    const auto row = rows.template at<V>(j);
+    const V r = Real(1) / row.x;
+    const V e = row.d * r;
+    const V s1 = rows.k1 * row.y1 * r;  // p_k/p
+    const V s2 = rows.k2 * row.y2 * r;
+    const V v = row.w * row.u;  // f/q
+    const V vt = v * (row.u * r);
+    sums[0] += vt * e;
+    sums[1] += vt * e * e;
+    sums[2] += vt;
+    sums[3] += v * s1;
+    sums[4] += v * s2;
+    sums[5] += v * s1 * e;
+    sums[6] += v * s2 * e;
+    sums[7] += v * s1 * e * e;
+    sums[8] += v * s2 * e * e;
   }
 };
 
@@ -209,11 +197,11 @@ PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const column
     if (exponent == 1) return detail::sum_powers(detail::power_one{}, exponent, rows, at);
     if (exponent == 2) return detail::sum_powers(detail::power_two{}, exponent, rows, at);
     if (exponent != 0) {
-      return detail::sum_powers(detail::power_any<Real>{static_cast<Real>(exponent)}, exponent, rows, at);
+      return detail::sum_powers(detail::power_any{exponent}, exponent, rows, at);
     }
   }
   double total[3] = {};
-  const detail::score_terms<Real, Divergence> terms(detail::pair_row<Real>(rows, at), divergence);
+  const detail::score_terms<Real, Divergence> terms{detail::pair_rows<Real>(rows, at), divergence};
   detail::sum_rows<3, Real>(rows.n, terms, total);
   return {total[0], total[1], total[2]};
 }
@@ -227,7 +215,7 @@ template <class Real>
 PHIMIS_HOST_DEVICE pair_sums sum_pair(const multi_sample_variance&, const columns<Real, 2>& rows,
                                       const pair_point<Real>& at) noexcept {
   double total[9] = {};
-  detail::sum_rows<9, Real>(rows.n, detail::variance_terms<Real>(detail::pair_row<Real>(rows, at)), total);
+  detail::sum_rows<9, Real>(rows.n, detail::variance_terms<Real>{detail::pair_rows<Real>(rows, at)}, total);
   const double n = at.mass;
   double s1 = 0;
   double s2 = 0;
