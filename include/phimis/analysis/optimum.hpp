@@ -5,6 +5,7 @@
 #include <phimis/analysis/problem.hpp>
 #include <phimis/analysis/variance.hpp>
 #include <phimis/concepts.hpp>
+#include <phimis/core/limits.hpp>
 #include <phimis/core/pair_sums.hpp>
 #include <phimis/core/solve_pair.hpp>
 #include <phimis/validate.hpp>
@@ -22,7 +23,7 @@ namespace phimis::analysis {
 /// Fractions that are optimal in a stated sense.
 struct pair_optimum {
   fractions<double, 2> alpha;
-  double error;     ///< of α_1, from the quadrature error of the condition over its slope; 0 at a bound
+  double error;     ///< of α_1, from the error of the condition over its slope; 0 at a bound
   double residual;  ///< KKT residual relative to λ
   bool local;       ///< the objective is not convex: this is the minimum downhill of the start
 };
@@ -89,14 +90,16 @@ pair_optimum solve_on(const Divergence& divergence, const problem<2>& on, const 
                       kinked && found.bracketed ? 0 : found.residual,
                       std::is_same_v<Divergence, multi_sample_variance>};
   if (found.alpha.first == low.first || found.alpha.second == high.second) return result;
-  // How far ζ may be off, over how fast it changes.
+  // How far ζ may be off, by quadrature, by what is left of it and by the rounding of its sum, over how fast it changes.
+  constexpr double rounding = 16 * epsilon<double>;
+  const pair_sums at = evaluate(found.alpha);
   const double h = 1e-4 * phimis::detail::smaller(found.alpha);
   const double above = evaluate({found.alpha.first + h, found.alpha.second - h}).zeta;
   const double below = evaluate({found.alpha.first - h, found.alpha.second + h}).zeta;
   const measured zeta = on.integral([&](double f, const per_technique<double, 2>& p, double) {
     return condition(divergence, on, f, p, result.alpha);
   });
-  result.error = zeta.error / ((below - above) / (2 * h));
+  result.error = (zeta.error + std::fabs(at.zeta) + rounding * at.lambda) / ((below - above) / (2 * h));
   return result;
 }
 

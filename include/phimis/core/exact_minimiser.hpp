@@ -33,7 +33,7 @@ enum class control_variate { on, off };
 /// Table     where rows are kept: fixed_table, or table, which grows.
 /// Requires  two techniques; each observation with the density q_j that it was drawn from, however long ago.
 /// Errors    `status()`; `residual()` is the KKT residual relative to λ.
-/// Cost      an update reads all rows 5 to 10 times, with one division a row.
+/// Cost      an update reads all rows once for each evaluation of `solve_pair` and once more, with one division a row.
 ///
 /// Source T Eqs. 16, 18, 25; design: bracketed Newton on a monotone function, end points first.
 template <class Divergence, class Table>

@@ -67,7 +67,8 @@ PHIMIS_HOST_DEVICE inline pair_fractions between(const pair_fractions& a, const 
 /// out of it. A ζ that is not finite pushes away from the nearer end.
 ///
 /// Requires low.first <= start.first <= high.first.   Errors none; the residual tells.
-/// Cost     4 to 8 evaluations from a far start, 2 or 3 from a near one, at most 100.
+/// Cost     2 to 4 evaluations from a near start, 4 to 10 from most others, 20 where Newton leaves the segment; at most
+///          100.
 template <class Evaluate>
 PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fractions low, pair_fractions high,
                                             pair_fractions start, double epsilon) noexcept {
