@@ -26,7 +26,7 @@ int main(int argc, char**) {
 
   // Learnt from samples, and the same on exact integrals.
   const auto learnt = phimis::integrate(f, techniques, {.budget = 20000},
-                                        phimis::exact_rule(jensen_shannon, {.floors = {0.01, 0.01}}));
+                                        phimis::exact_rule(jensen_shannon));
   const phimis::analysis::problem on(f, techniques, domain);
   const auto exact = phimis::analysis::optimum(jensen_shannon, on);
 

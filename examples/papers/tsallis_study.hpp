@@ -81,7 +81,7 @@ learnt_fractions learn(const Paper& paper, const phimis::analysis::problem<2>& o
 template <class Paper>
 learnt_fractions learn_by_newton(const Paper& paper, const phimis::analysis::problem<2>& on, double gamma,
                                  const std::mt19937_64& engine) {
-  return learn(paper, on, phimis::newton_rule(phimis::tsallis{gamma}, phimis::newton_form::paper),
+  return learn(paper, on, phimis::newton_rule(phimis::tsallis{gamma}, phimis::newton_form::paper, phimis::without_floors<double, 2>()),
                phimis::sampling_model::one_sample, engine);
 }
 
@@ -89,7 +89,7 @@ learnt_fractions learn_by_newton(const Paper& paper, const phimis::analysis::pro
 template <class Paper>
 learnt_fractions learn_by_minimiser(const Paper& paper, const phimis::analysis::problem<2>& on, double gamma,
                                     const std::mt19937_64& engine) {
-  return learn(paper, on, phimis::exact_rule(phimis::tsallis{gamma}), phimis::sampling_model::multi_sample, engine);
+  return learn(paper, on, phimis::exact_rule(phimis::tsallis{gamma}, phimis::without_floors<double, 2>()), phimis::sampling_model::multi_sample, engine);
 }
 
 inline summary summarise(std::vector<learnt_fractions> runs) {

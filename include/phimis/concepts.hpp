@@ -38,27 +38,30 @@ concept invertible_technique = technique<T> && requires(const T& t, detail::any_
   { t.invert(t.sample(next)) } -> std::convertible_to<double>;
 };
 
-namespace detail {
-template <class T>
-struct is_reversed : std::false_type {};
-template <class D>
-struct is_reversed<reversed<D>> : std::true_type {};
-}  // namespace detail
-
 /// A divergence that is given by φ: the power family by its exponent and φ, any other by φ's derivatives.
 ///
 /// φ is convex with φ(1) = 0.
 template <class T>
-concept phi_divergence_policy = detail::is_reversed<T>::value || requires(const T& d, double t) {
+concept phi_divergence_policy = requires(const T& d, double t) {
   { d.taylor(t) } -> std::same_as<phi_taylor<double>>;
-} || requires(const T& d, double t) {
+}
+|| requires(const T& d, double t) {
   { d.exponent() } -> std::convertible_to<double>;
   { d.phi(t) } -> std::convertible_to<double>;
 };
 
-/// What "mimics" means: a φ-divergence, or the multi-sample variance.
+namespace detail {
 template <class T>
-concept divergence = phi_divergence_policy<T> || std::same_as<T, multi_sample_variance>;
+struct is_reversed_phi : std::false_type {};
+template <phi_divergence_policy D>
+struct is_reversed_phi<reversed<D>> : std::true_type {};
+}  // namespace detail
+
+/// What "mimics" means: a φ-divergence, a reversed one, or the multi-sample variance. Reversed twice it is itself: write
+/// that.
+template <class T>
+concept divergence =
+    phi_divergence_policy<T> || detail::is_reversed_phi<T>::value || std::same_as<T, multi_sample_variance>;
 
 /// How techniques share one sample: weights w_1..w_M in [0, 1] that sum to one where any α_k p_k > 0, and w_k = 0
 /// where p_k = 0.

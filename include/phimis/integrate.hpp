@@ -4,6 +4,7 @@
 
 #include <phimis/concepts.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/finite.hpp>
 #include <phimis/core/uniform.hpp>
 #include <phimis/error.hpp>
 #include <phimis/estimator/batch.hpp>
@@ -12,10 +13,14 @@
 #include <phimis/technique/technique_set.hpp>
 #include <phimis/validate.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <random>
+#include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -27,8 +32,8 @@ struct integrate_options {
   std::int64_t budget = 500;  ///< samples in all, spread evenly over the iterations
   int iterations = 5;
   sampling_model model = sampling_model::multi_sample;
-  phimis::rounding rounding = rounding::largest_remainder;
-  std::uint64_t seed = 1;  ///< of the default uniform numbers, std::mt19937_64
+  phimis::rounding rounding = rounding::largest_remainder;  ///< of decided counts
+  std::uint64_t seed = 1;  ///< of the default uniform numbers, std::mt19937_64; another for every run to be combined
 };
 
 /// A callback's answer.
@@ -37,7 +42,7 @@ enum class progress { go_on, stop };
 enum class integration_status {
   complete,
   stopped,  ///< by the callback
-  all_zero  ///< no sample had f ≠ 0: the estimate is 0 and its standard error means nothing
+  all_zero  ///< stopped or not, no sample had a finite f ≠ 0: the estimate is 0 and its standard error infinite
 };
 
 /// One line of the trace.
@@ -62,7 +67,7 @@ template <class Value, int M, class Rule>
 struct integration {
   Value estimate = value_traits<Value>::zero();
   Value standard_error = value_traits<Value>::zero();
-  double effective_sample_size = 0;  ///< summed over iterations; of the pooled sample where it is pooled
+  double effective_sample_size = 0;  ///< of all samples as they were combined
   std::int64_t samples = 0;
   std::int64_t zero = 0;       ///< contributions that were 0
   std::int64_t nonfinite = 0;  ///< contributions that were not finite: each counts as a sample of value 0
@@ -96,6 +101,10 @@ struct callback_kind {
   template <class T>
   static constexpr bool is = std::invocable<T&, const Iteration&>;
 };
+
+/// How many policies are of a kind.
+template <class Kind, class... Policies>
+inline constexpr int how_many = (0 + ... + (Kind::template is<std::remove_cvref_t<Policies>> ? 1 : 0));
 
 /// The first policy of a kind, or the default.
 template <class Kind, class Default>
@@ -134,29 +143,51 @@ template <class Value>
 struct combined {
   Value estimate;
   Value standard_error;
+  double effective_sample_size;
 };
 
-/// F = Σ w_b F_b / Σ w_b, Var F = Σ w_b² Var F_b / (Σ w_b)², over the iterations of a trace.
+/// F = Σ w_b F_b / Σ w_b, Var F = Σ w_b² Var F_b / (Σ w_b)², over the iterations of a trace. An iteration of one sample
+/// has the given spread.
 template <class Value, int M, combination Combination>
-combined<Value> combine(const Combination& combination, const std::vector<iteration<Value, M>>& trace) {
+combined<Value> combine(const Combination& combination, const std::vector<iteration<Value, M>>& trace,
+                        const Value& spread) {
   using traits = value_traits<Value>;
+  using real = typename traits::real;
   std::vector<iteration_summary> summaries;
+  std::vector<Value> errors;
+  double largest = 0;
   for (const auto& it : trace) {
-    const double variance = static_cast<double>(traits::magnitude(it.standard_error * it.standard_error));
-    summaries.push_back({it.samples, variance, it.zero + it.nonfinite == it.samples});
+    errors.push_back(it.samples > 1 ? it.standard_error : spread);
+    const double error = static_cast<double>(traits::magnitude(errors.back()));
+    summaries.push_back({it.samples, error, it.zero + it.nonfinite == it.samples});
+    largest = std::max(largest, error);
   }
   std::vector<double> weights(trace.size());
-  combination(summaries, weights);
+  combination(std::span<const iteration_summary>(summaries), std::span<double>(weights));
   double sum = 0;
-  for (const double w : weights) sum += w;
+  for (const double w : weights) {
+    require(is_density(w), "a combination's weights", "must be finite and not negative", w);
+    sum += w;
+  }
+  require(sum > 0 && is_finite(sum), "a combination's weights", "must have a finite sum greater than 0", sum);
+
+  // Squares are taken in units of the largest.
+  const real unit = largest > 0 && is_finite(largest) ? static_cast<real>(largest) : real(1);
   Value estimate = traits::zero();
   Value variance = traits::zero();
+  double reached = 0;
+  double spent = 0;
   for (std::size_t b = 0; b < trace.size(); ++b) {
-    const auto share = static_cast<typename traits::real>(weights[b] / sum);
-    estimate = estimate + trace[b].estimate * share;
-    variance = variance + trace[b].standard_error * trace[b].standard_error * (share * share);
+    const double share = weights[b] / sum;
+    if (!(share > 0)) continue;
+    estimate = estimate + trace[b].estimate * static_cast<real>(share);
+    const Value part = errors[b] * (static_cast<real>(share) / unit);
+    variance = variance + part * part;
+    if (!(trace[b].effective_sample_size > 0)) continue;
+    reached += share;
+    spent += share * share / trace[b].effective_sample_size;
   }
-  return {estimate, traits::root(variance)};
+  return {estimate, traits::root(variance) * unit, spent > 0 ? reached * reached / spent : 0};
 }
 
 }  // namespace detail
@@ -169,7 +200,7 @@ combined<Value> combine(const Combination& combination, const std::vector<iterat
 ///
 /// Policies follow in any order, each by value and each with a default:
 ///
-///     rule              exact_rule(chi_squared{}, {.floors = .01, .prior = 1})
+///     rule              exact_rule(chi_squared{}, {.prior = 1}); fixed_rule<M>() where there are not two techniques
 ///     weight heuristic  balance{}
 ///     combination       by_count{}
 ///     uniform numbers   std::mt19937_64 of options.seed; any callable that returns the next one, taken by reference
@@ -188,14 +219,18 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
                Policies&&... policies) {
   constexpr int M = sizeof...(Techniques);
   using value = std::decay_t<decltype(f(std::declval<typename technique_set<Techniques...>::point>()))>;
+  static_assert(std::is_floating_point_v<value> || std::is_class_v<value>,
+                "the integrand must return a floating-point number, or a type with phimis::value_traits");
   using line = iteration<value, M>;
 
   require(options.iterations >= 1, "iterations", "must be at least 1", options.iterations);
-  require(options.budget >= options.iterations, "budget", "must be at least one sample an iteration", options.budget);
+  require(options.budget >= options.iterations, "budget",
+          "must be at least one sample for each of " + std::to_string(options.iterations) + " iterations",
+          options.budget);
 
   auto default_rule = [] {
     if constexpr (M == 2) {
-      return exact_rule(chi_squared{}, {.floors = {0.01, 0.01}, .prior = 1});
+      return exact_rule(chi_squared{}, {.prior = 1});
     } else {
       return fixed_rule<M>();
     }
@@ -210,27 +245,42 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
   const auto& combination = detail::pick<detail::combination_kind>(default_combination, policies...);
   auto& next = detail::pick<detail::source_kind>(default_source, policies...);
   auto& callback = detail::pick<detail::callback_kind<line>>(default_callback, policies...);
-  static_assert(((detail::rule_kind::is<std::remove_cvref_t<Policies>> ||
-                  detail::heuristic_kind::is<std::remove_cvref_t<Policies>> ||
-                  detail::combination_kind::is<std::remove_cvref_t<Policies>> ||
-                  detail::source_kind::is<std::remove_cvref_t<Policies>> ||
-                  detail::callback_kind<line>::template is<std::remove_reference_t<Policies>>)&&...),
-                "a policy of integrate() is a rule, a weight heuristic, a combination, a uniform source or a callback");
+  static_assert(
+      ((detail::rule_kind::is<std::remove_cvref_t<Policies>> ||
+        detail::heuristic_kind::is<std::remove_cvref_t<Policies>> ||
+        detail::combination_kind::is<std::remove_cvref_t<Policies>> ||
+        detail::source_kind::is<std::remove_cvref_t<Policies>> ||
+        detail::callback_kind<line>::template is<std::remove_reference_t<Policies>>)&&...),
+      "a policy of integrate() is a rule, a weight heuristic, a combination, a uniform source or a callback");
+  static_assert(detail::how_many<detail::rule_kind, Policies...> <= 1 &&
+                    detail::how_many<detail::heuristic_kind, Policies...> <= 1 &&
+                    detail::how_many<detail::combination_kind, Policies...> <= 1 &&
+                    detail::how_many<detail::source_kind, Policies...> <= 1 &&
+                    detail::how_many<detail::callback_kind<line>, Policies...> <= 1,
+                "integrate() takes at most one policy of each kind");
   using rule_type = decltype(rule);
   static_assert(rule_type::techniques == M, "the rule must be for as many techniques as there are");
+  static_assert(std::is_same_v<typename rule_type::real, double>,
+                "integrate() observes in double: the rule must, too");
+  using answer = decltype(callback(std::declval<const line&>()));
+  static_assert(std::is_void_v<answer> || std::is_same_v<answer, progress>,
+                "a callback of integrate() returns nothing or phimis::progress");
   validate(heuristic);
   if constexpr (requires { rule.divergence(); }) validate(rule.divergence());
   if constexpr (requires { rule.options(); }) validate(rule.options());
 
+  bool decided = true;  // every batch had the multi-sample variance
+  estimator<value, M> every_sample;
   constexpr bool pool = std::is_same_v<std::remove_cvref_t<decltype(combination)>, pooled>;
   detail::sample_pool<value, M> all;
   estimator<value, M> pooled_estimator;
   integration<value, M, rule_type> result{.rule = rule};
 
   for (int i = 0; i < options.iterations; ++i) {
-    const std::int64_t spread = options.budget / options.iterations;
-    const std::int64_t samples = spread + (i < options.budget % options.iterations ? 1 : 0);
+    const std::int64_t each = options.budget / options.iterations;
+    const std::int64_t samples = each + (i < options.budget % options.iterations ? 1 : 0);
     const fractions<double, M> alpha = result.rule.fractions();
+    for (const double a : alpha) require(is_density(a) && a <= 1, "the rule's fractions", "must lie in [0, 1]", a);
     const auto drawn = draw_batch(f, techniques, alpha, {samples, options.model, options.rounding}, heuristic, next,
                                   [&](const drawn_sample<value, M>& sample) {
                                     result.rule.observe(sample.observed);
@@ -243,27 +293,34 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
              .zero = drawn.estimator.zero(),
              .nonfinite = drawn.estimator.nonfinite(),
              .estimate = drawn.estimator.estimate(),
-             .standard_error = drawn.estimator.standard_error(drawn.spread),
+             .standard_error = drawn.estimator.standard_error(drawn.variance),
              .effective_sample_size = static_cast<double>(drawn.estimator.effective_sample_size()),
              .combined_estimate = value_traits<value>::zero(),
              .combined_standard_error = value_traits<value>::zero(),
              .status = result.rule.update()};
+    decided = decided && drawn.variance == sampling_model::multi_sample;
+    every_sample.merge(drawn.estimator);
     result.trace.push_back(now);
     result.samples += samples;
     result.zero += now.zero;
     result.nonfinite += now.nonfinite;
     if constexpr (pool) {
-      for (int k = 0; k < M; ++k) all.shares[k] += drawn.weights[k] * static_cast<double>(samples);
+      for (int k = 0; k < M; ++k) all.shares[k] += drawn.fractions[k] * static_cast<double>(samples);
       pooled_estimator = all.combine(heuristic);
       result.estimate = pooled_estimator.estimate();
-      result.standard_error = pooled_estimator.standard_error(drawn.spread);
+      result.standard_error =
+          pooled_estimator.standard_error(decided ? sampling_model::multi_sample : sampling_model::one_sample);
       result.effective_sample_size = static_cast<double>(pooled_estimator.effective_sample_size());
     } else {
-      const auto combined = detail::combine(combination, result.trace);
+      // The spread of one sample is that of all.
+      const value spread = every_sample.standard_error(sampling_model::one_sample) *
+                           static_cast<typename value_traits<value>::real>(std::sqrt(result.samples));
+      const auto combined = detail::combine(combination, result.trace, spread);
       result.estimate = combined.estimate;
       result.standard_error = combined.standard_error;
-      result.effective_sample_size += now.effective_sample_size;
+      result.effective_sample_size = combined.effective_sample_size;
     }
+    if (result.zero + result.nonfinite == result.samples) result.standard_error = value_traits<value>::unknown();
     result.trace.back().combined_estimate = result.estimate;
     result.trace.back().combined_standard_error = result.standard_error;
     if constexpr (std::is_void_v<decltype(callback(result.trace.back()))>) {
@@ -278,10 +335,12 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
   return result;
 }
 
-/// With 500 samples in 5 iterations, the default rule and combination.
-template <class Integrand, technique... Techniques>
-auto integrate(const Integrand& f, const technique_set<Techniques...>& techniques) {
-  return integrate(f, techniques, integrate_options{});
+/// With the default options: 500 samples in 5 iterations.
+template <class Integrand, technique... Techniques, class... Policies>
+requires(!std::same_as<std::remove_cvref_t<Policies>, integrate_options> &&
+         ...) auto integrate(const Integrand& f, const technique_set<Techniques...>& techniques,
+                             Policies&&... policies) {
+  return integrate(f, techniques, integrate_options{}, std::forward<Policies>(policies)...);
 }
 
 }  // namespace phimis

@@ -5,6 +5,7 @@
 #include <phimis/error.hpp>
 
 #include <limits>
+#include <string>
 
 namespace phimis {
 
@@ -15,7 +16,7 @@ class interval {
  public:
   constexpr interval() = default;
   interval(double lower, double upper) : lower_(lower), upper_(upper) {
-    require(lower < upper, "interval.upper", "must be greater than interval.lower", upper);
+    require(lower < upper, "interval.upper", "must be greater than interval.lower, " + std::to_string(lower), upper);
   }
 
   constexpr double lower() const noexcept { return lower_; }

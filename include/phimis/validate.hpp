@@ -8,6 +8,8 @@
 #include <phimis/core/weight_heuristic.hpp>
 #include <phimis/error.hpp>
 
+#include <limits>
+
 // Core cannot throw. What is built from its values above core is checked here first: each overload throws
 // std::invalid_argument that names the parameter, the rule and the value.
 
@@ -32,7 +34,8 @@ void validate(const reversed<Divergence>& divergence) {
 }
 
 inline void validate(const power& heuristic) {
-  require(heuristic.beta >= 0 && is_finite(heuristic.beta), "beta", "must be finite and not negative", heuristic.beta);
+  require(heuristic.beta >= 0 && is_finite(heuristic.beta), "beta", "must be finite and not negative",
+          heuristic.beta);
 }
 
 inline void validate(const cutoff& heuristic) {

@@ -45,7 +45,7 @@ void check_fixed_fractions(double alpha, sampling_model model, const Heuristic& 
     const double f = batch.estimator.estimate();
     estimates.add(f);
     squares.add((f - mu) * (f - mu));
-    claimed.add(batch.estimator.variance(batch.spread));
+    claimed.add(batch.estimator.variance(batch.variance));
   }
   INFO(Paper::name << " alpha " << alpha << (model == sampling_model::multi_sample ? " multi" : " one") << "-sample");
   CHECK(std::fabs(z_score(estimates, mu)) < 4);
@@ -63,9 +63,9 @@ void check_adaptive(const char* name, sampling_model model, const Policies&... p
   auto next = [&] { return phimis::uniform(engine()); };
   phimis::moments<double> estimates;
   for (int run = 0; run < runs; ++run) {
-    estimates.add(phimis::integrate(Paper::f, a.techniques, {.budget = 100, .iterations = 5, .model = model}, next,
-                                    policies...)
-                      .estimate);
+    estimates.add(
+        phimis::integrate(Paper::f, a.techniques, {.budget = 100, .iterations = 5, .model = model}, next, policies...)
+            .estimate);
   }
   INFO(Paper::name << ' ' << name);
   CHECK(std::fabs(z_score(estimates, a.oracle.mean().value)) < 4);

@@ -130,9 +130,9 @@ TEST_CASE("Edges of the rules are no fault") {
 }
 
 TEST_CASE("The budget must be at least one sample an iteration") {
-  refuses([] { run({.budget = 0}); }, "budget", "must be at least one sample an iteration", "0");
-  refuses([] { run({.budget = 4, .iterations = 5}); }, "budget", "must be at least one sample an iteration", "4");
-  refuses([] { run({.budget = -10}); }, "budget", "must be at least one sample an iteration", "-10");
+  refuses([] { run({.budget = 0}); }, "budget", "must be at least one sample for each of 5 iterations", "0");
+  refuses([] { run({.budget = 4, .iterations = 5}); }, "budget", "must be at least one sample for each of 5 iterations", "4");
+  refuses([] { run({.budget = -10}); }, "budget", "must be at least one sample for each of 5 iterations", "-10");
 }
 
 TEST_CASE("There must be an iteration") {
@@ -154,7 +154,7 @@ TEST_CASE("The threshold of the cutoff heuristic must lie in [0, 1]") {
 TEST_CASE("integrate() checks a rule that was made without a check") {
   using newton = phimis::newton_raphson<phimis::tsallis>;
   refuses([] { run({}, newton({-2})); }, "gamma", "must be finite and greater than 0", "-2");
-  rule_options<double, 2> options;
+  auto options = phimis::without_floors<double, 2>();
   options.prior = -3;
   refuses([&] { run({}, newton({1}, phimis::newton_form::paper, options)); }, "prior",
           "must be finite and not negative", "-3");

@@ -11,7 +11,9 @@ namespace {
 using phimis::iteration_summary;
 
 template <class Combination>
-std::vector<double> weights(const Combination& combination, const std::vector<iteration_summary>& iterations) {
+std::vector<double> weights(const Combination& combination, std::vector<iteration_summary> iterations) {
+  // The tests give variances.
+  for (iteration_summary& it : iterations) it.standard_error = std::sqrt(it.standard_error);
   std::vector<double> result(iterations.size());
   combination(iterations, result);
   double sum = 0;

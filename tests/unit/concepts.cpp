@@ -114,6 +114,9 @@ static_assert(!phimis::divergence<taylor_of_another_type>);
 static_assert(!phimis::divergence<exponent_without_phi>);
 static_assert(!phimis::divergence<phi_without_exponent>);
 static_assert(!phimis::divergence<double>);
+static_assert(!phimis::divergence<phimis::reversed<phimis::reversed<phimis::tsallis>>>);
+static_assert(!phimis::divergence<phimis::reversed<phimis::multi_sample_variance>>);
+static_assert(!phimis::divergence<phimis::reversed<int>>);
 
 // weight_heuristic
 struct sound_heuristic {

@@ -40,9 +40,8 @@ inline std::vector<double> crossings(const problem<2>& on, const fractions<doubl
     const double after = excess(x[i]);
     if (before * after < 0) {
       std::uintmax_t most = 100;
-      const auto [low, high] =
-          boost::math::tools::toms748_solve(excess, x[i - 1], x[i], before, after,
-                                            boost::math::tools::eps_tolerance<double>(), most);
+      const auto [low, high] = boost::math::tools::toms748_solve(excess, x[i - 1], x[i], before, after,
+                                                                 boost::math::tools::eps_tolerance<double>(), most);
       roots.push_back(low + (high - low) / 2);
     }
     before = after;
@@ -59,10 +58,8 @@ double condition(const Divergence& divergence, const problem<2>& on, double f, c
   const double t = std::fabs(f) / (on.size() * q);
   if constexpr (std::is_same_v<Divergence, multi_sample_variance>) {
     return (p[0] - p[1]) * t * t;
-  } else if constexpr (phimis::detail::is_kinked<Divergence>::value) {
-    return (p[0] - p[1]);  // smooth between the kinks, where it is integrated
   } else {
-    return (p[0] - p[1]) * score_at(divergence, t).value;
+    return (p[0] - p[1]) * (score_at(divergence, t).value - score_at_zero(divergence));
   }
 }
 
@@ -70,9 +67,11 @@ template <class Divergence>
 pair_optimum solve_on(const Divergence& divergence, const problem<2>& on, const rule_options<double, 2>& options,
                       const fractions<double, 2>& from) {
   constexpr bool kinked = phimis::detail::is_kinked<Divergence>::value;
-  const table<double, 2> rows = on.rows();
+  constexpr bool local = std::is_same_v<Divergence, multi_sample_variance>;
+  const bool normalised = on.missing_mass()[0] == 0 && on.missing_mass()[1] == 0;
+  const table<double, 2> rows = local ? on.signed_rows() : on.rows();
   const auto evaluate = [&](const pair_fractions& at) {
-    const pair_point<double> point{{at.first, at.second}, {1, 1}, 1 / on.size(), 1};
+    const pair_point<double> point{{at.first, at.second}, {1, 1}, 1 / on.size(), 1, normalised};
     if constexpr (kinked) {
       const table<double, 2> split = on.split_at(crossings(on, {{at.first, at.second}})).rows();
       return sum_pair(divergence, split.view(), point);
@@ -83,12 +82,11 @@ pair_optimum solve_on(const Divergence& divergence, const problem<2>& on, const 
   const pair_fractions low{options.floors[0], 1 - options.floors[0]};
   const pair_fractions high{1 - options.floors[1], options.floors[1]};
   const fractions<double, 2> start = with_floors(from, options.floors);
-  const pair_solution found = solve_pair(evaluate, low, high, {start[0], start[1]}, 1e-15);
+  const pair_solution found =
+      solve_pair(evaluate, low, high, {start[0], start[1]}, 1e-15, local ? objective::any : objective::convex);
 
-  pair_optimum result{{{found.alpha.first, found.alpha.second}},
-                      0,
-                      kinked && found.bracketed ? 0 : found.residual,
-                      std::is_same_v<Divergence, multi_sample_variance>};
+  pair_optimum result{
+      {{found.alpha.first, found.alpha.second}}, 0, kinked && found.bracketed ? 0 : found.residual, local};
   if (found.alpha.first == low.first || found.alpha.second == high.second) return result;
   // How far ζ may be off, by quadrature, by what is left of it and by the rounding of its sum, over how fast it changes.
   constexpr double rounding = 16 * epsilon<double>;
@@ -96,9 +94,11 @@ pair_optimum solve_on(const Divergence& divergence, const problem<2>& on, const 
   const double h = 1e-4 * phimis::detail::smaller(found.alpha);
   const double above = evaluate({found.alpha.first + h, found.alpha.second - h}).zeta;
   const double below = evaluate({found.alpha.first - h, found.alpha.second + h}).zeta;
-  const measured zeta = on.integral([&](double f, const per_technique<double, 2>& p, double) {
+  const auto integrand = [&](double f, const per_technique<double, 2>& p, double) {
     return condition(divergence, on, f, p, result.alpha);
-  });
+  };
+  const measured zeta =
+      kinked ? on.split_at(crossings(on, result.alpha)).integral(integrand) : on.integral(integrand);
   result.error = (zeta.error + std::fabs(at.zeta) + rounding * at.lambda) / ((below - above) / (2 * h));
   return result;
 }
@@ -115,12 +115,13 @@ measured divergence_between_kinks(const Divergence& divergence, const problem<2>
 /// The fractions of two techniques that minimise a divergence, or V[F], on the exact integrals.
 ///
 /// The solver is that of the exact minimiser, on quadrature nodes in place of samples. Where φ has kinks the panels are
-/// split at g = p(α) for every α that it tries.
+/// split at g = p(α) for every α that it tries; without floors unless they are asked for; kinks of φ elsewhere than at t = 1 enlarge the error.
 ///
 /// Source T Eqs. 16, 18, 25, 27; V[F] by multi_sample_variance.
 /// Errors std::invalid_argument as `validate`; where a reversed divergence is infinite for every α.
 template <divergence Divergence>
-pair_optimum optimum(const Divergence& divergence, const problem<2>& on, const rule_options<double, 2>& options = {}) {
+pair_optimum optimum(const Divergence& divergence, const problem<2>& on,
+                     const rule_options<double, 2>& options = without_floors<double, 2>()) {
   validate(divergence);
   validate(options);
   const table<double, 2> rows = on.rows();
@@ -130,12 +131,11 @@ pair_optimum optimum(const Divergence& divergence, const problem<2>& on, const r
     require(zeros == 0, "divergence", "is infinite where f = 0 < p; number of such nodes", zeros);
   }
   pair_optimum result = detail::solve_on(divergence, on, options, options.start);
-  if (result.error > 1e-12) {
+  if (!phimis::detail::is_kinked<Divergence>::value && result.error > 1e-12) {
     // Powers of f/p far from 1 need finer panels than f and p themselves: resolve the condition at the solution.
     const fractions<double, 2> at = result.alpha;
-    const problem<2> refined = on.refined_for([&](double f, const per_technique<double, 2>& p) {
-      return detail::condition(divergence, on, f, p, at);
-    });
+    const problem<2> refined = on.refined_for(
+        [&](double f, const per_technique<double, 2>& p) { return detail::condition(divergence, on, f, p, at); });
     result = detail::solve_on(divergence, refined, options, at);
   }
   return result;

@@ -55,8 +55,6 @@ class problem {
         missing_[k] = 1 - mass;
       }
     }
-    mean_ = integral([](double value, const pdfs&, double) { return value; });
-    size_ = integral([](double value, const pdfs&, double) { return std::fabs(value); });
     require(size_.value > 0, "integrand", "must not be 0 everywhere; its integral", size_.value);
   }
 
@@ -113,23 +111,35 @@ class problem {
 
   /// The nodes as rows of a rule.
   table<double, M> rows() const {
-    table<double, M> rows;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      observation<double, M> node{values_[i], all_pdfs_[i], 1 / weights_[i], 0};
-      row<double, M> row;
-      if (to_row(node, row)) rows.push(row);
-    }
-    return rows;
+    return rows_of([](double, double u) { return u; });
+  }
+
+  /// The nodes as rows in which u has the sign of f.
+  table<double, M> signed_rows() const {
+    return rows_of([](double f, double u) { return std::copysign(u, f); });
   }
 
   const std::vector<double>& nodes() const noexcept { return nodes_; }
 
  private:
+  template <class Adjust>
+  table<double, M> rows_of(const Adjust& adjust) const {
+    table<double, M> rows;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      observation<double, M> node{values_[i], all_pdfs_[i], 1 / weights_[i], 0};
+      row<double, M> row;
+      if (!to_row(node, row)) continue;
+      row.u = adjust(values_[i], row.u);
+      rows.push(row);
+    }
+    return rows;
+  }
+
   void tabulate() {
     const auto shapes = [&](double x) {
       const double value = f_(x);
       const pdfs p = pdfs_(x);
-      std::array<double, 2 * M + 3> values{};
+      std::array<double, 2 * M + 4> values{};
       double mixture = 0;
       for (int k = 0; k < M; ++k) {
         require(!(p[k] < 0), "pdf " + std::to_string(k + 1), "must not be negative; it is at x", x);
@@ -143,7 +153,8 @@ class problem {
       }
       values[2 * M] = value;
       values[2 * M + 1] = square;
-      if (also_) values[2 * M + 2] = also_(value, p);
+      values[2 * M + 2] = std::fabs(value);  // a kink where f changes sign
+      if (also_) values[2 * M + 3] = also_(value, p);
       return values;
     };
     const std::vector<double> edges = smooth_panels(shapes, domain_, breakpoints_);
@@ -164,6 +175,8 @@ class problem {
         all_pdfs_.push_back(pdfs_(x));
       }
     }
+    mean_ = integral([](double value, const pdfs&, double) { return value; });
+    size_ = integral([](double value, const pdfs&, double) { return std::fabs(value); });
   }
 
   std::function<double(double)> f_;

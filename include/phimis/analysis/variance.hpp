@@ -4,9 +4,9 @@
 
 #include <phimis/analysis/problem.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/limits.hpp>
 
 #include <cmath>
-#include <limits>
 
 namespace phimis::analysis {
 
@@ -46,17 +46,17 @@ variances variance(const problem<M>& on, const fractions<double, M>& alpha) {
   variances result{};
   result.one_sample = on.integral([&](double f, const pdfs& p, double) {
     const double q = mixture(alpha, p);
-    if (q == 0) return f == 0 ? 0.0 : std::numeric_limits<double>::infinity();
+    if (q == 0) return f == 0 ? 0.0 : infinity<double>;
     return (f / q - mu) * (f / q - mu) * q;
   });
   // The rounding of f/p and μ, which is all that is left where the variance vanishes.
   constexpr double rounding = 1e-15;
   result.one_sample.error += on.integral([&](double f, const pdfs& p, double) {
-    const double q = mixture(alpha, p);
-    if (q == 0) return 0.0;
-    const double error = rounding * (std::fabs(f / q) + std::fabs(mu));
-    return (2 * std::fabs(f / q - mu) + error) * error * q;
-  }).value;
+                                 const double q = mixture(alpha, p);
+                                 if (q == 0) return 0.0;
+                                 const double error = rounding * (std::fabs(f / q) + std::fabs(mu));
+                                 return (2 * std::fabs(f / q - mu) + error) * error * q;
+                               }).value;
   for (int k = 0; k < M; ++k) {
     const double missing = on.missing_mass()[k];
     measured excess = on.integral([&](double f, const pdfs& p, double) {
@@ -79,10 +79,17 @@ variances variance(const problem<M>& on, const fractions<double, M>& alpha) {
 /// Reversed divergences give D_φ(p, g).   Source T Eqs. 11, 21.
 template <class Divergence, int M>
 measured divergence_at(const Divergence& divergence, const problem<M>& on, const fractions<double, M>& alpha) {
-  return on.integral([&](double f, const per_technique<double, M>& p, double) {
+  measured result = on.integral([&](double f, const per_technique<double, M>& p, double) {
     const double q = mixture(alpha, p);
-    return q == 0 ? (f == 0 ? 0.0 : std::numeric_limits<double>::infinity()) : q * phi_at(divergence, std::fabs(f) / (on.size() * q));
+    if (q == 0) return f == 0 ? 0.0 : infinity<double>;
+    return q * phi_at(divergence, std::fabs(f) / (on.size() * q));
   });
+  constexpr double rounding = 4 * epsilon<double>;
+  result.error += rounding * (2 + std::fabs(result.value));  // of t, in φ
+  // What defective pdfs lose has g = 0.
+  const double missing = mixture(alpha, on.missing_mass());
+  if (missing > 0) result.value += missing * phi_at(divergence, 0.0);
+  return result;
 }
 
 }  // namespace phimis::analysis

@@ -68,11 +68,13 @@ PHIMIS_HOST_DEVICE counts<M> split_systematic(const fractions<Real, M>& alpha, s
                                               double u) noexcept {
   PHIMIS_EXPECTS(budget >= 0 && u >= 0 && u < 1);
   counts<M> n{};
+  double total = 0;
+  for (int k = 0; k < M; ++k) total += static_cast<double>(alpha[k]);
   double sum = 0;
   std::int64_t before = 0;
   int last = 0;
   for (int k = 0; k < M; ++k) {
-    sum += static_cast<double>(alpha[k]) * static_cast<double>(budget);
+    sum += static_cast<double>(alpha[k]) / total * static_cast<double>(budget);
     std::int64_t upto = static_cast<std::int64_t>(sum + u);
     if (upto > budget) upto = budget;
     n[k] = upto - before;

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 namespace phimis {
 
@@ -19,7 +20,8 @@ namespace phimis {
 ///     D_φ(g, p):  s = t φ'(t) − φ(t),   t s' = t² φ''(t)
 ///     D_φ(p, g):  s = −φ'(1/t),         t s' = φ''(1/t) / t
 ///
-/// Source T Eqs. 16, 18. A constant factor or term of s changes no optimum and is dropped.
+/// Source T Eqs. 16, 18. A constant factor of s changes no optimum and is dropped. A constant term changes none between
+/// normalised densities; where a pdf is defective it must be such that s(0) = 0, see `score_at_zero`.
 template <class Real>
 struct score {
   Real value;
@@ -166,8 +168,7 @@ struct reversed {
 
   /// 1 − γ for the power family.
   template <class D = Divergence>
-  PHIMIS_HOST_DEVICE constexpr auto exponent() const noexcept
-      -> std::enable_if_t<has_exponent<D>::value, double> {
+  PHIMIS_HOST_DEVICE constexpr auto exponent() const noexcept -> std::enable_if_t<has_exponent<D>::value, double> {
     return 1 - forward.exponent();
   }
 };
@@ -225,6 +226,18 @@ PHIMIS_HOST_DEVICE score<Real> score_at(const reversed<Divergence>& divergence, 
   }
 }
 
+/// s(0) where it is finite, else 0: what is subtracted from a score, so that lost samples, f = 0 where every pdf is 0,
+/// are worth nothing.
+template <class Divergence>
+PHIMIS_HOST_DEVICE double score_at_zero(const Divergence& divergence) noexcept {
+  if constexpr (has_exponent<Divergence>::value) {
+    return 0;
+  } else {
+    const double value = score_at(divergence, 0.0).value;
+    return is_finite(value) ? value : 0;
+  }
+}
+
 /// φ(t) of a divergence at t = g/p(α) ≥ 0; the divergence is ∫ p φ(g/p) dx.
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE Real phi_at(const Divergence& divergence, Real t) noexcept {
@@ -238,9 +251,10 @@ template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE Real phi_at(const reversed<Divergence>& divergence, Real t) noexcept {
   if (t > 0) return t * phi_at(divergence.forward, 1 / t);
   if constexpr (has_exponent<Divergence>::value) {
+    // φ is a multiple of the Tsallis divergence's, whose slope at infinity is 1/(1 − γ) for γ < 1.
     const double gamma = divergence.forward.exponent();
-    const Real scale = std::is_same<Divergence, hellinger>::value ? Real(0.5) : Real(1);
-    return gamma < 1 ? scale / static_cast<Real>(1 - gamma) : infinity<Real>;
+    const double scale = divergence.forward.phi(2.0) / tsallis{gamma}.phi(2.0);
+    return gamma < 1 ? static_cast<Real>(scale / (1 - gamma)) : infinity<Real>;
   } else {
     return static_cast<Real>(detail::slope_at_infinity(divergence.forward));
   }

@@ -3,14 +3,31 @@
 #define PHIMIS_CORE_ESTIMATOR_HPP
 
 #include <phimis/core/config.hpp>
+#include <phimis/core/finite.hpp>
 #include <phimis/core/fractions.hpp>
 #include <phimis/core/moments.hpp>
 #include <phimis/core/value.hpp>
 #include <phimis/core/weight_heuristic.hpp>
 
+#include <cmath>
 #include <cstdint>
 
 namespace phimis {
+
+namespace detail {
+
+/// weight · f / density; 0 for a lost sample, f = 0 where there is no density; infinite where a pdf is no density.
+template <class Value, class Real, int M>
+PHIMIS_HOST_DEVICE Value per_density(const Value& f, Real weight, Real density, const per_technique<Real, M>& pdfs) {
+  using traits = value_traits<Value>;
+  for (int k = 0; k < M; ++k) {
+    if (!is_density(pdfs[k])) return traits::unknown();
+  }
+  if (!(density > 0) && traits::finite(f) && !(traits::magnitude(f) > 0)) return traits::zero();
+  return f * static_cast<typename traits::real>(weight / density);
+}
+
+}  // namespace detail
 
 /// What one sample of technique k adds to N times the estimate.
 ///
@@ -18,16 +35,17 @@ namespace phimis {
 ///
 /// Source   T Eqs. 1, 6, 8.
 /// Requires alpha = n_k/N where counts are decided, the probabilities α_k where they are drawn.
-/// Errors   not finite where p_k(x) = 0 at its own sample; `estimator::add` counts it.
+/// Errors   0 where f is 0, as at a lost sample; not finite, which `estimator::add` counts, where a pdf is negative or not
+///          finite, as a delta's, or where f ≠ 0 and p_k(x) = 0 at its own sample.
 template <class Heuristic, class Value, class Real, int M>
 PHIMIS_HOST_DEVICE Value contribution(const Heuristic& heuristic, int k, const Value& f,
                                       const fractions<Real, M>& alpha, const per_technique<Real, M>& pdfs) {
-  return f * static_cast<typename value_traits<Value>::real>(heuristic(k, alpha, pdfs) / (alpha[k] * pdfs[k]));
+  return detail::per_density(f, heuristic(k, alpha, pdfs), alpha[k] * pdfs[k], pdfs);
 }
 template <class Value, class Real, int M>
 PHIMIS_HOST_DEVICE Value contribution(const balance&, int, const Value& f, const fractions<Real, M>& alpha,
                                       const per_technique<Real, M>& pdfs) {
-  return f * static_cast<typename value_traits<Value>::real>(Real(1) / mixture(alpha, pdfs));
+  return detail::per_density(f, Real(1), mixture(alpha, pdfs), pdfs);
 }
 
 /// How the technique of a sample is chosen.
@@ -43,7 +61,9 @@ enum class sampling_model {
 ///     Var ℱ = s² / N              (one-sample: spread of all samples)
 ///
 /// Source T Eqs. 1, 3, 8, 9, with sample variances in place of σ².
-/// - A technique with one sample has no spread of its own: its distance to the mean of all is taken, which is more.
+/// - A technique with one sample has no spread of its own: its distance to the mean of the others is taken, whose
+///   square is more on average.
+/// - Contributions are kept in units of a power of two near the first that is not 0, so that no scale of f overflows.
 template <class Value, int M>
 class estimator {
  public:
@@ -59,13 +79,17 @@ class estimator {
     }
     const real magnitude = value_traits<Value>::magnitude(y);
     if (!(magnitude > 0)) ++zero_;
-    by_technique_[technique].add(y);
-    magnitude_.add(magnitude);
+    if (!(unit_ > 0) && magnitude > 0) unit_ = unit_near(magnitude);
+    const real scale = unit_ > 0 ? 1 / unit_ : real(1);
+    by_technique_[technique].add(y * scale);
+    magnitude_.add(magnitude * scale);
   }
 
   PHIMIS_HOST_DEVICE void merge(const estimator& other) {
-    for (int k = 0; k < M; ++k) by_technique_[k].merge(other.by_technique_[k]);
-    magnitude_.merge(other.magnitude_);
+    if (!(unit_ > 0)) unit_ = other.unit_;
+    const real ratio = other.unit_ > 0 ? other.unit_ / unit_ : real(1);
+    for (int k = 0; k < M; ++k) by_technique_[k].merge(scaled(other.by_technique_[k], ratio));
+    magnitude_.merge(scaled(other.magnitude_, ratio));
     zero_ += other.zero_;
     nonfinite_ += other.nonfinite_;
   }
@@ -76,25 +100,14 @@ class estimator {
   PHIMIS_HOST_DEVICE std::int64_t nonfinite() const noexcept { return nonfinite_; }
 
   /// 0 without samples.
-  PHIMIS_HOST_DEVICE Value estimate() const { return all().mean; }
+  PHIMIS_HOST_DEVICE Value estimate() const { return all().mean * unit(); }
 
-  /// Variance of the estimate; 0 with fewer than two samples.
-  PHIMIS_HOST_DEVICE Value variance(sampling_model model) const {
-    const moments<Value> total = all();
-    if (total.count < 2) return value_traits<Value>::zero();
-    const real inverse = real(1) / static_cast<real>(total.count);
-    if (model == sampling_model::one_sample) return total.variance() * inverse;
-    Value sum = value_traits<Value>::zero();
-    for (int k = 0; k < M; ++k) {
-      const moments<Value>& own = by_technique_[k];
-      if (own.count > 1) sum = sum + own.variance() * static_cast<real>(own.count);
-      if (own.count == 1) sum = sum + (own.mean - total.mean) * (own.mean - total.mean);
-    }
-    return sum * (inverse * inverse);
-  }
+  /// Variance of the estimate; infinite, for unknown, with fewer than two samples.
+  PHIMIS_HOST_DEVICE Value variance(sampling_model model) const { return variance_in_units(model) * unit() * unit(); }
 
+  /// Square root of the variance, also where that would overflow.
   PHIMIS_HOST_DEVICE Value standard_error(sampling_model model) const {
-    return value_traits<Value>::root(variance(model));
+    return value_traits<Value>::root(variance_in_units(model)) * unit();
   }
 
   /// Kish's effective sample size of the contributions.  (Σ|y|)² / Σ y², 0 where all are 0
@@ -111,10 +124,45 @@ class estimator {
     return total;
   }
 
+  PHIMIS_HOST_DEVICE real unit() const noexcept { return unit_ > 0 ? unit_ : real(1); }
+
+  PHIMIS_HOST_DEVICE Value variance_in_units(sampling_model model) const {
+    const moments<Value> total = all();
+    if (total.count < 2) return value_traits<Value>::unknown();
+    const real n = static_cast<real>(total.count);
+    if (model == sampling_model::one_sample) return total.variance() * (1 / n);
+    Value sum = value_traits<Value>::zero();
+    for (int k = 0; k < M; ++k) {
+      const moments<Value>& own = by_technique_[k];
+      if (own.count > 1) sum = sum + own.variance() * static_cast<real>(own.count);
+      if (own.count == 1) {
+        const Value apart = (own.mean - total.mean) * (n / (n - 1));
+        sum = sum + apart * apart;
+      }
+    }
+    return sum * (1 / (n * n));
+  }
+
+  /// A power of two within a factor of 2, whose inverse is a number too.
+  PHIMIS_HOST_DEVICE static real unit_near(real magnitude) noexcept {
+    int exponent = 0;
+    (void)std::frexp(magnitude, &exponent);
+    constexpr int least = sizeof(real) == 8 ? -1000 : -120;
+    return std::ldexp(real(1), exponent > least ? exponent - 1 : least);
+  }
+
+  template <class V>
+  PHIMIS_HOST_DEVICE static moments<V> scaled(moments<V> of, real ratio) {
+    of.mean = of.mean * ratio;
+    of.squares = of.squares * ratio * ratio;
+    return of;
+  }
+
   moments<Value> by_technique_[M]{};
   moments<real> magnitude_{};
   std::int64_t zero_ = 0;
   std::int64_t nonfinite_ = 0;
+  real unit_ = 0;  // of by_technique_ and magnitude_; 0 before the first contribution that is not 0
 };
 
 }  // namespace phimis

@@ -32,7 +32,8 @@ enum class control_variate { on, off };
 ///
 /// Table     where rows are kept: fixed_table, or table, which grows.
 /// Requires  two techniques; each observation with the density q_j that it was drawn from, however long ago.
-/// Errors    `status()`; `residual()` is the KKT residual relative to λ.
+/// Errors    `status()`; `residual()` is the KKT residual relative to λ, 0 where a score steps across zero within the last
+///           digit of α.
 /// Cost      an update reads all rows once for each evaluation of `solve_pair` and once more, with one division a row.
 ///
 /// Source T Eqs. 16, 18, 25; design: bracketed Newton on a monotone function, end points first.
@@ -43,8 +44,9 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
  public:
   using Real = typename Table::real;
 
-  PHIMIS_HOST_DEVICE explicit exact_minimiser(const Divergence& divergence = {}, const rule_options<Real, 2>& options = {},
-                           phimis::control_variate variate = control_variate::on) noexcept
+  PHIMIS_HOST_DEVICE exact_minimiser() noexcept : exact_minimiser(Divergence{}) {}
+  PHIMIS_HOST_DEVICE explicit exact_minimiser(const Divergence& divergence, const rule_options<Real, 2>& options = {},
+                                              phimis::control_variate variate = control_variate::on) noexcept
       : rule_base<Real, 2>(options), divergence_(divergence), variate_(variate) {}
 
   PHIMIS_HOST_DEVICE const Divergence& divergence() const noexcept { return divergence_; }
@@ -54,11 +56,13 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, 2>& sample) {
     row<Real, 2> row;
-    if (this->admit(sample, row)) keep(row);
+    if (!this->admit(sample, row)) return;
+    if (local && sample.f < 0) row.u = -row.u;  // V[F] is the one objective that f and |f| do not share
+    keep(row);
   }
 
   PHIMIS_HOST_DEVICE rule_status update() noexcept {
-    if (infinite_at_zero(divergence_) && this->counters_.zero > 0) {
+    if (zeros_ && infinite_at_zero(divergence_)) {
       return this->status_ = rule_status::infinite_divergence;
     }
     if (!(largest_ > 0)) return this->status_ = rule_status::no_information;
@@ -66,44 +70,51 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
     if (!(on.mass[0] > 0) || !(on.mass[1] > 0)) return this->status_ = rule_status::no_information;
 
     // The solver's fractions are those of the normalised pdfs: a_k ∝ α_k/κ_k.
-    const auto& floors = this->options_.floors;
-    const pair_fractions low = to_solver(on, floors[0], 1 - static_cast<double>(floors[0]));
-    const pair_fractions high = to_solver(on, 1 - static_cast<double>(floors[1]), floors[1]);
-    const pair_fractions start = to_solver(on, this->fractions_[0], this->fractions_[1]);
-    const pair_fractions prior = to_solver(on, this->options_.start[0], this->options_.start[1]);
+    const double floor1 = static_cast<double>(this->options_.floors[0]);
+    const double floor2 = static_cast<double>(this->options_.floors[1]);
+    const pair_fractions low = to_solver(on, floor1, 1 - floor1);
+    const pair_fractions high = to_solver(on, 1 - floor2, floor2);
+    const pair_fractions start = to_solver(on, this->fractions_);
+    const pair_fractions prior = to_solver(on, this->options_.start);
     const problem evaluate{*this, on, prior};
-    constexpr double rounding = epsilon<Real>;
-    const pair_solution solution = solve_pair(evaluate, low, high, start, 4 * rounding);
+    constexpr double rounding = static_cast<double>(epsilon<Real>);
+    const pair_solution solution =
+        solve_pair(evaluate, low, high, start, 4 * rounding, local ? objective::any : objective::convex);
     evaluations_ = solution.evaluations;
-    residual_ = detail::is_kinked<Divergence>::value && solution.bracketed ? 0 : solution.residual;
+    residual_ = solution.residual;
+    // A step of s that crosses zero within the last digit of α is a root of a φ with a kink.
+    const bool converged = residual_ <= 1e4 * rounding;
+    if (!converged && detail::is_kinked<Divergence>::value && solution.bracketed) residual_ = 0;
 
     if (solution.alpha.first == low.first && solution.alpha.second == low.second) {
-      set_fractions(floors[0], 1 - static_cast<double>(floors[0]));
+      set_fractions(floor1, 1 - floor1);
     } else if (solution.alpha.first == high.first && solution.alpha.second == high.second) {
-      set_fractions(1 - static_cast<double>(floors[1]), floors[1]);
+      set_fractions(1 - floor2, floor2);
     } else {
       const double first = solution.alpha.first * on.kappa[0];
       const double second = solution.alpha.second * on.kappa[1];
       set_fractions(first / (first + second), second / (first + second));
     }
-    if (residual_ > 1e4 * rounding) return this->status_ = rule_status::not_converged;
-    return this->status_ = std::is_same<Divergence, multi_sample_variance>::value ? rule_status::local
-                                                                                    : rule_status::updated;
+    if (!converged && residual_ > 0) return this->status_ = rule_status::not_converged;
+    return this->status_ = local ? rule_status::local : rule_status::updated;
   }
 
   /// Adds the observations of another state; fractions stay until the next update.
   PHIMIS_HOST_DEVICE void merge(const exact_minimiser& other) {
     this->counters_.merge(other.counters_);
-    for (std::ptrdiff_t j = 0; j < other.table_.size(); ++j) keep(other.table_[j]);
+    const std::ptrdiff_t theirs = other.table_.size();  // `other` may be this
+    for (std::ptrdiff_t j = 0; j < theirs; ++j) keep(other.table_[j]);
   }
 
  private:
   PHIMIS_HOST_DEVICE void keep(const row<Real, 2>& row) {
     if (!table_.push(row)) {
       ++this->counters_.dropped;
-    } else if (row.u > largest_) {
-      largest_ = row.u;
+      return;
     }
+    const Real size = row.u < 0 ? -row.u : row.u;
+    if (size > largest_) largest_ = size;
+    if (!(size > 0)) zeros_ = true;
   }
 
   struct prepared {
@@ -138,25 +149,29 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
       const pair_point<Real> point{{static_cast<Real>(at.first), static_cast<Real>(at.second)},
                                    {static_cast<Real>(on.kappa[0]), static_cast<Real>(on.kappa[1])},
                                    static_cast<Real>(on.unit),
-                                   static_cast<double>(rule.table_.size())};
+                                   static_cast<double>(rule.table_.size()),
+                                   rule.variate_ == control_variate::on};
       pair_sums sums = sum_pair(rule.divergence_, rule.table_.view(), point);
       const double weight = static_cast<double>(rule.options_.prior);
       if (weight > 0) {
-        const auto s1 = prior_score(on.mean * prior.first / at.first);
-        const auto s2 = prior_score(on.mean * prior.second / at.second);
+        const auto s1 = prior_score(prior.first, at.first);
+        const auto s2 = prior_score(prior.second, at.second);
         sums.zeta += weight * (s1.value - s2.value);
-        sums.slope += weight * (s1.slope / at.first + s2.slope / at.second);
+        if (s1.slope > 0) sums.slope += weight * s1.slope / at.first;
+        if (s2.slope > 0) sums.slope += weight * s2.slope / at.second;
         sums.lambda += weight * (at.first * (s1.value < 0 ? -s1.value : s1.value) +
                                  at.second * (s2.value < 0 ? -s2.value : s2.value));
       }
       return sums;
     }
 
-    PHIMIS_HOST_DEVICE score<double> prior_score(double t) const noexcept {
-      if constexpr (std::is_same<Divergence, multi_sample_variance>::value) {
-        return score_at(chi_squared{}, t);
+    /// Of a technique with the share π of the start, at the share α; s(0) where the start has none.
+    PHIMIS_HOST_DEVICE score<double> prior_score(double pi, double alpha) const noexcept {
+      const double t = on.mean * pi / alpha;
+      if constexpr (local) {
+        return pi > 0 ? score_at(chi_squared{}, t) : score<double>{0, 0};
       } else {
-        return score_at(rule.divergence_, t);
+        return pi > 0 ? score_at(rule.divergence_, t) : score<double>{score_at_zero(rule.divergence_), 0};
       }
     }
   };
@@ -181,7 +196,7 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
 
   /// Only powers of t are free of the unit of f; the others want t = g/p, g = f/μ̂.
   PHIMIS_HOST_DEVICE bool needs_mean() const noexcept {
-    if constexpr (std::is_same<Divergence, multi_sample_variance>::value) {
+    if constexpr (local) {
       return false;
     } else if constexpr (has_exponent<Divergence>::value) {
       return divergence_.exponent() == 0;
@@ -190,6 +205,10 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
     }
   }
 
+  PHIMIS_HOST_DEVICE static pair_fractions to_solver(const prepared& on,
+                                                     const phimis::fractions<Real, 2>& of) noexcept {
+    return to_solver(on, static_cast<double>(of[0]), static_cast<double>(of[1]));
+  }
   PHIMIS_HOST_DEVICE static pair_fractions to_solver(const prepared& on, double first, double second) noexcept {
     const double a1 = first / on.kappa[0];
     const double a2 = second / on.kappa[1];
@@ -201,10 +220,13 @@ class exact_minimiser : public rule_base<typename Table::real, 2> {
     this->fractions_[1] = static_cast<Real>(second);
   }
 
+  static constexpr bool local = std::is_same<Divergence, multi_sample_variance>::value;
+
   Divergence divergence_;
   phimis::control_variate variate_;
   Table table_{};
-  Real largest_ = 0;
+  Real largest_ = 0;  // |u|
+  bool zeros_ = false;
   double residual_ = 0;
   int evaluations_ = 0;
 };

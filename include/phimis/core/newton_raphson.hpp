@@ -37,7 +37,8 @@ class newton_raphson : public rule_base<Real, 2> {
                 "newton_raphson needs a divergence of the power family; exact_minimiser takes any");
 
  public:
-  PHIMIS_HOST_DEVICE explicit newton_raphson(const Divergence& divergence = {},
+  PHIMIS_HOST_DEVICE newton_raphson() noexcept : newton_raphson(Divergence{}) {}
+  PHIMIS_HOST_DEVICE explicit newton_raphson(const Divergence& divergence,
                                              newton_form form = newton_form::safeguarded,
                                              const rule_options<Real, 2>& options = {}) noexcept
       : rule_base<Real, 2>(options), divergence_(divergence), form_(form) {}
@@ -85,14 +86,17 @@ class newton_raphson : public rule_base<Real, 2> {
     if (form_ == newton_form::safeguarded || exponent() == 0) {
       zeta -= batch.score / batch.mixture * batch.tilt;
     }
-    if (options.prior > 0) {
-      // An end is infinitely far from the prior: go back to where it is.
-      if (!(alpha[0] > 0) || !(alpha[1] > 0)) alpha = options.start;
+    for (int k = 0; k < 2 && options.prior > 0; ++k) {
+      if (!(options.start[k] > 0)) continue;
+      if (!(alpha[k] > 0)) {
+        // An end is infinitely far from the prior: go back to where it is.
+        alpha = with_floors(options.start, options.floors);
+        return this->status_ = rule_status::updated;
+      }
       const Real mean = batch.f / static_cast<Real>(batch.n);
-      const score<Real> s1 = power_score(mean * options.start[0] / alpha[0], exponent());
-      const score<Real> s2 = power_score(mean * options.start[1] / alpha[1], exponent());
-      zeta += options.prior * (s1.value - s2.value);
-      slope += options.prior * (s1.slope / alpha[0] + s2.slope / alpha[1]);
+      const score<Real> s = power_score(mean * options.start[k] / alpha[k], exponent());
+      zeta += options.prior * (k == 0 ? s.value : -s.value);
+      slope += options.prior * s.slope / alpha[k];
     }
     const Real step = zeta / slope;
     if (!(slope > 0)) return this->status_ = rule_status::no_information;
@@ -110,7 +114,7 @@ class newton_raphson : public rule_base<Real, 2> {
     }
     first = first < low ? low : first > high ? high : first;
     alpha[0] = first;
-    alpha[1] = 1 - first;
+    alpha[1] = first == high ? options.floors[1] : 1 - first;
     return this->status_ = rule_status::updated;
   }
 

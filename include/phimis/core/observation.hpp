@@ -13,10 +13,10 @@ namespace phimis {
 /// Units f in the integrand's unit, pdfs and q in 1/measure. A colour enters by one scalar, its luminance.
 template <class Real, int M>
 struct observation {
-  Real f;                         ///< f(x), the integrand; may be negative, rules use |f|
-  per_technique<Real, M> pdfs;    ///< p_1(x)..p_M(x)
-  Real q;                         ///< the density that x was drawn from, the mixture of its batch
-  int technique;                  ///< which technique drew x
+  Real f;                       ///< f(x), the integrand; may be negative, rules use |f|
+  per_technique<Real, M> pdfs;  ///< p_1(x)..p_M(x)
+  Real q;                       ///< the density that x was drawn from, the mixture of its batch
+  int technique;                ///< which technique drew x
 };
 
 /// An observation without units: what a rule stores.
@@ -33,7 +33,8 @@ struct row {
 };
 
 /// Writes the row of an observation and says whether it is one: false where a number in it, or their quotient, is
-/// not finite, where a pdf is negative, or where q or all pdfs are 0. Such an observation is counted, never summed.
+/// not finite, where a pdf is negative, or where f ≠ 0 but q or all pdfs are 0. Such an observation is counted, never
+/// summed. A lost sample, f = 0 where every pdf is 0, is a row of zeros.
 template <class Real, int M>
 PHIMIS_HOST_DEVICE bool to_row(const observation<Real, M>& sample, row<Real, M>& out) noexcept {
   Real sum = 0;
@@ -42,6 +43,10 @@ PHIMIS_HOST_DEVICE bool to_row(const observation<Real, M>& sample, row<Real, M>&
     sum += sample.pdfs[k];
   }
   if (!is_finite(sample.f) || !is_density(sample.q) || !is_finite(sum)) return false;
+  if (sample.f == 0 && !(sum > 0)) {
+    out = row<Real, M>{};
+    return true;
+  }
   if (!(sum > 0) || !(sample.q > 0)) return false;
   out.u = (sample.f < 0 ? -sample.f : sample.f) / sum;
   out.w = sum / sample.q;

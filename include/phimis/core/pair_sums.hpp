@@ -18,7 +18,7 @@ namespace phimis {
 ///     −ζ' = Σ_j (p_1j − p_2j)²/(q_j p_j) t_j s'(t_j)  minus the derivative of ζ in α_1
 ///     λ  = Σ_j p_j/q_j |s(t_j)|                       the scale that a residual is relative to
 ///
-/// Where s is no power of t, its zero is arbitrary and λ is Σ p/q (|s| + t s').
+/// Unless pdfs are normalised, s is taken with s(0) = 0 where that is finite. Where s is no power of t, λ is Σ p/q (|s| + t s').
 ///
 /// Source T Eqs. 27–31, with the density q_j that each sample was drawn from in place of p(α).
 struct pair_sums {
@@ -37,7 +37,8 @@ struct pair_point {
   Real alpha[2];
   Real kappa[2];
   Real unit;
-  double mass;  ///< Σ_j 1/q_j: n for samples, 1 for quadrature nodes
+  double mass;              ///< what sums are divided by to be means: n for samples, 1 for quadrature nodes
+  bool normalised = false;  ///< Σ p_k κ_k/q is the same for both: a constant of s cancels, and is better not added
 };
 
 namespace detail {
@@ -100,12 +101,7 @@ struct pair_rows {
     constexpr Real tiny = sizeof(Real) == 8 ? Real(1e-300) : Real(1e-37);
     const V y1 = load<V>(rows.y[0] + j);
     const V y2 = load<V>(rows.y[1] + j);
-    return {y1,
-            y2,
-            b1 * y1 + b2 * y2 + tiny,
-            k1 * y1 - k2 * y2,
-            unit * load<V>(rows.u + j),
-            load<V>(rows.w + j)};
+    return {y1, y2, b1 * y1 + b2 * y2 + tiny, k1 * y1 - k2 * y2, unit * load<V>(rows.u + j), load<V>(rows.w + j)};
   }
 };
 
@@ -143,6 +139,7 @@ struct score_terms {
   static constexpr bool packed = false;
   pair_rows<Real> rows;
   const Divergence& divergence;
+  Real zero;  // s(0), or 0 where constants cancel
 
   template <class V>
   PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[3]) const noexcept {
@@ -150,9 +147,10 @@ struct score_terms {
     const V e = row.d / row.x;
     const V wx = row.w * row.x;
     const score<Real> s = score_at(divergence, row.u / row.x);
-    sums[0] += wx * e * s.value;
+    const V value = s.value - zero;
+    sums[0] += wx * e * value;
     sums[1] += wx * e * e * s.slope;
-    sums[2] += wx * ((s.value < 0 ? -s.value : s.value) + s.slope);
+    sums[2] += wx * ((value < 0 ? -value : value) + s.slope);
   }
 };
 
@@ -201,7 +199,9 @@ PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const column
     }
   }
   double total[3] = {};
-  const detail::score_terms<Real, Divergence> terms{detail::pair_rows<Real>(rows, at), divergence};
+  const detail::score_terms<Real, Divergence> terms{
+      detail::pair_rows<Real>(rows, at), divergence,
+      at.normalised ? Real(0) : static_cast<Real>(score_at_zero(divergence))};
   detail::sum_rows<3, Real>(rows.n, terms, total);
   return {total[0], total[1], total[2]};
 }

@@ -37,18 +37,35 @@ struct rule_counters {
   }
 };
 
+/// The default floors: 2 % of the budget, shared equally.
+template <class Real, int M>
+PHIMIS_HOST_DEVICE constexpr per_technique<Real, M> defensive_floors() noexcept {
+  per_technique<Real, M> floors{};
+  for (int k = 0; k < M; ++k) floors[k] = Real(0.02) / Real(M);
+  return floors;
+}
+
 /// What every rule takes: where to start, what to keep, how much to trust the start.
 ///
 /// Requires start on the simplex; floors_k >= 0, Σ floors <= 1; prior >= 0. A start below a floor is raised to it.
 template <class Real, int M>
 struct rule_options {
   fractions<Real, M> start = equal_fractions<Real, M>();
-  /// Defensive floors: constraints inside the optimisation.
-  per_technique<Real, M> floors{};
+  /// Defensive floors: constraints inside the optimisation. At 0 a technique may be given up for good, with what it alone
+  /// can reach; estimates are unbiased only where every technique that is needed keeps a fraction.
+  per_technique<Real, M> floors = defensive_floors<Real, M>();
   /// Weight of the start fractions π in units of samples: the objective is n D(g, p(α)) + prior · D(π, α). For the
   /// Kullback–Leibler divergence this is the Dirichlet prior of concentration prior · π.
   Real prior = 0;
 };
+
+/// Options in which a technique may be given up: for those who know that no technique alone reaches any part of f.
+template <class Real, int M>
+PHIMIS_HOST_DEVICE constexpr rule_options<Real, M> without_floors() noexcept {
+  rule_options<Real, M> options;
+  options.floors = per_technique<Real, M>{};
+  return options;
+}
 
 /// What every rule has: its options, its fractions, the status of its last update, its counters.
 template <class Real, int M>
@@ -83,12 +100,15 @@ class rule_base {
   rule_status status_ = rule_status::start;
 };
 
-/// The rule that learns nothing: its fractions are the start, equal by default.
+/// The rule that learns nothing: its fractions are the start, equal by default, whatever the floors.
 template <class Real, int M>
 class fixed_fractions : public rule_base<Real, M> {
  public:
-  PHIMIS_HOST_DEVICE explicit fixed_fractions(const rule_options<Real, M>& options = {}) noexcept
-      : rule_base<Real, M>(options) {}
+  PHIMIS_HOST_DEVICE fixed_fractions() noexcept : fixed_fractions(rule_options<Real, M>{}) {}
+  PHIMIS_HOST_DEVICE explicit fixed_fractions(const rule_options<Real, M>& options) noexcept
+      : rule_base<Real, M>(options) {
+    this->fractions_ = options.start;
+  }
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, M>& sample) noexcept {
     row<Real, M> ignored;

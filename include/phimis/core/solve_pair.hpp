@@ -60,19 +60,24 @@ PHIMIS_HOST_DEVICE inline pair_fractions between(const pair_fractions& a, const 
 
 }  // namespace detail
 
+/// Whether ζ falls everywhere, so that it has one root at most.
+enum class objective { convex, any };
+
 /// The root of ζ between two ends, by Newton's method inside a bracket that shrinks with every sign of ζ.
 ///
-/// evaluate(pair_fractions) returns pair_sums. Where ζ decreases from + to − in α_1 the root is the minimiser; for a
-/// divergence that is not convex it is the local minimum downhill of the start. An end is the answer where ζ points
-/// out of it. A ζ that is not finite pushes away from the nearer end.
+/// evaluate(pair_fractions) returns pair_sums. Where ζ decreases from + to − in α_1 the root is the minimiser. Of an
+/// objective that is not convex it is a local minimum downhill of the start: the end is approached in steps of at most
+/// an eighth of the way, and the first change of sign is taken. An end is the answer where ζ points out of it. A ζ that
+/// is not finite pushes away from the nearer end.
 ///
 /// Requires low.first <= start.first <= high.first.   Errors none; the residual tells.
 /// Cost     2 to 4 evaluations from a near start, 4 to 10 from most others, 20 where Newton leaves the segment; at most
-///          100.
+///          150.
 template <class Evaluate>
 PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fractions low, pair_fractions high,
-                                            pair_fractions start, double epsilon) noexcept {
-  constexpr int most = 100;
+                                            pair_fractions start, double epsilon,
+                                            objective kind = objective::convex) noexcept {
+  constexpr int most = 150;
   bool low_known = false;  // ζ(low) > 0 was seen
   bool high_known = false;
   double last_step = 2;
@@ -91,7 +96,13 @@ PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fract
       best.alpha = alpha;
       best.residual = residual;
     }
-    if (zeta == 0) break;
+    // Where ζ is rounding of its sums, here or over the whole segment, no other α is better.
+    const double range = size + std::fabs(at.slope);
+    if (finite && (size <= epsilon / 8 * at.lambda || range <= 16 * epsilon * at.lambda)) {
+      best.alpha = alpha;
+      best.residual = residual;
+      break;
+    }
 
     // An end where ζ points outwards is the optimum.
     if ((zeta < 0 && !low_known && detail::distance(low, alpha) <= 0) ||
@@ -117,8 +128,16 @@ PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fract
     // Newton's step is taken while it halves and stays inside; otherwise an unseen end, then the middle.
     pair_fractions next = detail::shifted(alpha, newton ? step : 0);
     const bool inside = newton && detail::distance(low, next) > 0 && detail::distance(next, high) > 0;
-    if (!inside || std::fabs(step) > last_step / 2) {
-      const bool bracket = zeta > 0 ? high_known : low_known;
+    const bool bracket = zeta > 0 ? high_known : low_known;
+    if (kind == objective::any && !bracket) {
+      const pair_fractions& end = zeta > 0 ? high : low;
+      const double way = zeta > 0 ? detail::distance(alpha, high) : detail::distance(low, alpha);
+      if (way <= 1e-3) {
+        next = end;
+      } else if (!inside || std::fabs(step) > way / 8) {
+        next = detail::shifted(alpha, zeta > 0 ? way / 8 : -way / 8);
+      }
+    } else if (!inside || std::fabs(step) > last_step / 2) {
       next = bracket ? detail::between(low, high) : zeta > 0 ? high : low;
     }
     last_step = std::fabs(next.first - alpha.first);

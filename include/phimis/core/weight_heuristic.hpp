@@ -54,9 +54,7 @@ struct power {
     Real mine = 0;
     for (int k = 0; k < M; ++k) {
       const Real share = alpha[k] * pdfs[k] / scale;  // at most 1: no power overflows
-      const Real term = !(share > 0) ? Real(0)
-                        : beta == 2  ? share * share
-                                     : std::pow(share, static_cast<Real>(beta));
+      const Real term = !(share > 0) ? Real(0) : beta == 2 ? share * share : std::pow(share, static_cast<Real>(beta));
       sum += term;
       if (k == i) mine = term;
     }

@@ -3,6 +3,7 @@
 #define PHIMIS_DIVERGENCE_PHI_DIVERGENCE_HPP
 
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/finite.hpp>
 
 #include <boost/math/differentiation/autodiff.hpp>
 
@@ -32,7 +33,8 @@ class phi_divergence {
   template <class Real>
   phi_taylor<Real> taylor(Real t) const {
     phi_taylor<double> at = derivatives(static_cast<double>(t));
-    if (!(t > 0) && std::isnan(at.value)) at.value = derivatives(std::numeric_limits<double>::min()).value;
+    if (!(t > 0) && !is_finite(at.value) && !(at.value > 0))
+      at.value = derivatives(std::numeric_limits<double>::min()).value;
     return {static_cast<Real>(at.value), static_cast<Real>(at.first), static_cast<Real>(at.second)};
   }
 

@@ -28,8 +28,8 @@ struct batch_options {
 template <class Value, int M>
 struct batch {
   phimis::counts<M> counts{};
-  phimis::fractions<double, M> weights{};  ///< n_k/N where counts were decided, α_k where they were drawn
-  sampling_model spread = sampling_model::multi_sample;  ///< which variance holds for the counts
+  phimis::fractions<double, M> fractions{};  ///< n_k/N where counts were decided, α_k where they were drawn
+  sampling_model variance = sampling_model::multi_sample;  ///< which formula holds for the counts
   phimis::estimator<Value, M> estimator{};
 };
 
@@ -58,16 +58,16 @@ auto draw_batch(const Integrand& f, const Techniques& techniques, const fraction
     drawn_sample<value, M> sample{{}, f(x), value_traits<value>::zero()};
     sample.observed.pdfs = techniques.pdfs(x);
     sample.observed.f = static_cast<double>(value_traits<value>::magnitude(sample.value));
-    sample.observed.q = mixture(result.weights, sample.observed.pdfs);
+    sample.observed.q = mixture(result.fractions, sample.observed.pdfs);
     sample.observed.technique = k;
-    sample.contribution = contribution(heuristic, k, sample.value, result.weights, sample.observed.pdfs);
+    sample.contribution = contribution(heuristic, k, sample.value, result.fractions, sample.observed.pdfs);
     result.estimator.add(k, sample.contribution);
     receive(sample);
   };
 
   if (options.model == sampling_model::one_sample) {
-    result.weights = alpha;
-    result.spread = sampling_model::one_sample;
+    result.fractions = alpha;
+    result.variance = sampling_model::one_sample;
     for (std::int64_t j = 0; j < options.samples; ++j) {
       const int k = pick_technique(alpha, static_cast<double>(next()));
       ++result.counts[k];
@@ -79,12 +79,12 @@ auto draw_batch(const Integrand& f, const Techniques& techniques, const fraction
   for (const double a : alpha) needed += a > 0 ? 1 : 0;
   if (options.rounding == rounding::systematic || options.samples < needed) {
     result.counts = split_systematic(alpha, options.samples, static_cast<double>(next()));
-    result.weights = alpha;
-    result.spread = sampling_model::one_sample;  // not less than the true one, which rounding makes hard to know
+    result.fractions = alpha;
+    result.variance = sampling_model::one_sample;  // close where N is large against M; the true one is hard to know
   } else {
     result.counts = split_largest_remainder(alpha, options.samples);
     for (int k = 0; k < M; ++k) {
-      result.weights[k] = static_cast<double>(result.counts[k]) / static_cast<double>(options.samples);
+      result.fractions[k] = static_cast<double>(result.counts[k]) / static_cast<double>(options.samples);
     }
   }
   for (int k = 0; k < M; ++k) {

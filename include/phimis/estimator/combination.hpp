@@ -2,6 +2,7 @@
 #ifndef PHIMIS_ESTIMATOR_COMBINATION_HPP
 #define PHIMIS_ESTIMATOR_COMBINATION_HPP
 
+#include <phimis/core/finite.hpp>
 #include <phimis/error.hpp>
 
 #include <algorithm>
@@ -18,8 +19,8 @@ namespace phimis {
 /// What a combination may know of one iteration.
 struct iteration_summary {
   std::int64_t samples;
-  double variance;  ///< of the iteration's estimate, by magnitude
-  bool all_zero;    ///< every contribution was 0: its variance is unknown, not 0
+  double standard_error;  ///< of the iteration's estimate, by magnitude
+  bool all_zero;          ///< every contribution was 0: its standard error is unknown, not 0
 };
 
 /// How iterations become one estimate: F = Σ_b weight_b F_b / Σ_b weight_b.
@@ -57,15 +58,16 @@ class fixed_weights {
   explicit fixed_weights(std::vector<double> per_sample) : per_sample_(std::move(per_sample)) {
     require(!per_sample_.empty(), "fixed_weights", "must hold at least one weight", per_sample_.size());
     for (const double w : per_sample_) {
-      require(w >= 0 && std::isfinite(w), "fixed_weights", "must be finite and not negative", w);
+      require(w >= 0 && is_finite(w), "fixed_weights", "must be finite and not negative", w);
     }
     require(per_sample_.back() > 0, "fixed_weights", "must end with a weight greater than 0", per_sample_.back());
   }
   void operator()(std::span<const iteration_summary> iterations, std::span<double> weights) const {
     // A run that was stopped early may have met no positive weight: then all samples count.
-    const bool any = iterations.size() >= per_sample_.size() ||
-                     std::any_of(per_sample_.begin(), per_sample_.begin() + static_cast<std::ptrdiff_t>(iterations.size()),
-                                 [](double w) { return w > 0; });
+    const bool any =
+        iterations.size() >= per_sample_.size() ||
+        std::any_of(per_sample_.begin(), per_sample_.begin() + static_cast<std::ptrdiff_t>(iterations.size()),
+                    [](double w) { return w > 0; });
     for (std::size_t b = 0; b < iterations.size(); ++b) {
       const double each = any ? per_sample_[std::min(b, per_sample_.size() - 1)] : 1;
       weights[b] = static_cast<double>(iterations[b].samples) * each;
@@ -80,22 +82,26 @@ class fixed_weights {
 /// estimate and a small variance, so low estimates weigh more.
 ///
 /// An iteration whose contributions are all 0 gets the largest variance that was seen; iterations without variance
-/// share all the weight where there are any.
+/// share all the weight where there are any. What is not finite counts as all 0.
 struct inverse_variance {
   void operator()(std::span<const iteration_summary> iterations, std::span<double> weights) const {
+    const auto known = [](const iteration_summary& it) {
+      return !it.all_zero && it.samples > 1 && is_finite(it.standard_error);
+    };
     double largest = 0;
     bool exact = false;
     for (const iteration_summary& it : iterations) {
-      largest = std::max(largest, it.variance);
-      exact = exact || (it.variance == 0 && !it.all_zero && it.samples > 1);
+      if (!known(it)) continue;
+      largest = std::max(largest, it.standard_error);
+      exact = exact || it.standard_error == 0;
     }
     for (std::size_t b = 0; b < iterations.size(); ++b) {
       const iteration_summary& it = iterations[b];
-      const bool known = !it.all_zero && it.samples > 1;
       if (exact || largest == 0) {
-        weights[b] = !exact || (known && it.variance == 0) ? static_cast<double>(it.samples) : 0;
+        weights[b] = !exact || (known(it) && it.standard_error == 0) ? static_cast<double>(it.samples) : 0;
       } else {
-        weights[b] = largest / (known ? it.variance : largest);
+        const double ratio = known(it) ? largest / it.standard_error : 1;
+        weights[b] = ratio * ratio;
       }
     }
   }

@@ -2,6 +2,7 @@
 #ifndef PHIMIS_QUADRATURE_PANELS_HPP
 #define PHIMIS_QUADRATURE_PANELS_HPP
 
+#include <phimis/core/finite.hpp>
 #include <phimis/error.hpp>
 #include <phimis/interval.hpp>
 
@@ -54,7 +55,8 @@ inline const std::array<kronrod_node, 31>& kronrod_nodes() {
 ///
 ///     functions(x) -> std::array<double, K>
 ///
-/// Requires a bounded domain; breakpoints (kinks, jumps) inside it, in any order.
+/// Requires a bounded domain; breakpoints (kinks, jumps, and features narrower than 1/100 of the domain, which no node may
+///          meet) inside it, in any order.
 /// Errors   std::invalid_argument where the domain is unbounded or a function is not finite inside it.
 template <class Functions>
 std::vector<double> smooth_panels(const Functions& functions, const interval& domain,
@@ -84,7 +86,7 @@ std::vector<double> smooth_panels(const Functions& functions, const interval& do
       const double x = middle + half * node.x;
       const values v = functions(x);
       for (std::size_t i = 0; i < v.size(); ++i) {
-        require(std::isfinite(v[i]), "function", "must be finite inside its domain; it is not at x", x);
+        require(is_finite(v[i]), "function", "must be finite inside its domain; it is not at x", x);
         p.integral[i] += half * node.weight * std::fabs(v[i]);
         signed_difference[i] += half * (node.weight - node.gauss_weight) * v[i];
       }

@@ -2,6 +2,7 @@
 #ifndef PHIMIS_TECHNIQUE_GAUSSIAN_HPP
 #define PHIMIS_TECHNIQUE_GAUSSIAN_HPP
 
+#include <phimis/core/finite.hpp>
 #include <phimis/technique/distribution.hpp>
 
 #include <boost/math/distributions/normal.hpp>

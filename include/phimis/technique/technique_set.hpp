@@ -26,7 +26,8 @@ class technique_set {
   /// p_1(x)..p_M(x)
   per_technique<double, techniques> pdfs(const point& x) const {
     return std::apply(
-        [&](const auto&... t) { return per_technique<double, techniques>{{static_cast<double>(t.pdf(x))...}}; }, all_);
+        [&](const auto&... t) { return per_technique<double, techniques>{{static_cast<double>(t.pdf(x))...}}; },
+        all_);
   }
 
   /// A point from technique k.

@@ -181,15 +181,6 @@ TEST_CASE("Reversing a Tsallis divergence turns gamma into 1 - gamma") {
   }
 }
 
-TEST_CASE("Reversing twice gives the divergence back") {
-  using phimis::reversed;
-  const reversed<reversed<phimis::tsallis>> twice{{{0.7}}};
-  CHECK(twice.exponent() == Approx(0.7).epsilon(1e-15));
-  for (const long double t : points) {
-    CHECK(near(phimis::phi_at(twice, t), phimis::phi_at(phimis::tsallis{0.7}, t), 1e-15L));
-  }
-}
-
 TEST_CASE("Pearson-Vajda of orders one and two are twice total variation and chi squared") {
   for (const long double t : points) {
     CHECK(near(phimis::phi_at(phimis::pearson_vajda{1}, t), 2 * phimis::phi_at(phimis::total_variation{}, t), 1e-18L));

@@ -56,7 +56,8 @@ naive naively(const std::vector<sample>& all) {
     if (n < 1) continue;
     mean /= n;
     for (const sample& s : all) own += s.technique == k ? (s.y - mean) * (s.y - mean) : 0;
-    const long double variance = n > 1 ? own / (n - 1) : (mean - result.estimate) * (mean - result.estimate);
+    const long double others = (N * result.estimate - mean) / (N - 1);
+    const long double variance = n > 1 ? own / (n - 1) : (mean - others) * (mean - others);
     result.multi_sample += n * variance / (N * N);
   }
   result.ess = squares > 0 ? absolute * absolute / squares : 0;
@@ -91,7 +92,7 @@ TEST_CASE("Estimate, both variances and effective sample size are those of the f
   }
 }
 
-TEST_CASE("A technique with one sample counts by its distance to the mean of all") {
+TEST_CASE("A technique with one sample counts by its distance to the mean of the others") {
   const std::vector<sample> all{{0, 1}, {0, 2}, {0, 4}, {1, 7}};
   phimis::estimator<double, M> computed;
   for (const sample& s : all) computed.add(s.technique, s.y);
@@ -138,8 +139,10 @@ TEST_CASE("Without samples, or with zeros alone, nothing is NaN") {
   phimis::estimator<double, 2> computed;
   for (int i = 0; i < 3; ++i) {
     CHECK(computed.estimate() == 0);
-    CHECK(computed.variance(sampling_model::multi_sample) == 0);
-    CHECK(computed.variance(sampling_model::one_sample) == 0);
+    // One sample says nothing of a spread.
+    const double unknown = i < 2 ? std::numeric_limits<double>::infinity() : 0;
+    CHECK(computed.variance(sampling_model::multi_sample) == unknown);
+    CHECK(computed.variance(sampling_model::one_sample) == unknown);
     CHECK(computed.effective_sample_size() == 0);
     computed.add(i % 2, 0);
   }

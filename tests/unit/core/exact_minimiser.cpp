@@ -80,7 +80,8 @@ struct definition {
     condition sums{0, 0, 0};
     for (const term& j : terms) {
       const long double p = mixture(j, a1, a2);
-      const auto s = phimis::score_at(divergence, j.f > 0 ? j.f / mean / p : 0.0L);
+      auto s = phimis::score_at(divergence, j.f > 0 ? j.f / mean / p : 0.0L);
+      s.value -= phimis::score_at_zero(divergence);
       sums.first += kappa1 * j.p1 / j.q * s.value;
       sums.second += kappa2 * j.p2 / j.q * s.value;
       sums.lambda += p / j.q * (std::fabs(s.value) + (phimis::has_exponent<Divergence>::value ? 0 : s.slope));
@@ -91,14 +92,14 @@ struct definition {
   struct objective {
     long double value, size;
   };
-  /// Σ p/q φ(g/p)
+  /// Σ p/q (φ(g/p) − φ(0)), where φ(0) is finite: the constant that makes a lost sample worth nothing.
   template <class Divergence>
   objective divergence(const Divergence& of, long double a1, long double a2) const {
     objective sum{0, 0};
     for (const term& j : terms) {
       const long double p = mixture(j, a1, a2);
       const long double phi = j.f > 0 ? true_phi_at(of, j.f / mean / p).value : phimis::phi_at(of, 0.0L);
-      const long double part = p > 0 ? p / j.q * phi : 0;
+      const long double part = p > 0 ? p / j.q * (phi + phimis::score_at_zero(of)) : 0;
       sum.value += part;
       sum.size += std::fabs(part);
     }
@@ -108,7 +109,7 @@ struct definition {
 
 template <class Divergence, class Real>
 minimiser<Divergence, Real> learn(const Divergence& divergence, const observations<Real>& all, control_variate variate,
-                                  const rule_options<Real, 2>& options = {}) {
+                                  const phimis::rule_options<Real, 2>& options = phimis::without_floors<Real, 2>()) {
   minimiser<Divergence, Real> rule(divergence, options, variate);
   for (const auto& o : all) rule.observe(o);
   rule.update();
@@ -143,7 +144,7 @@ TEMPLATE_TEST_CASE("The fractions satisfy the optimality condition from any star
         for (const double start : {0.0, 1e-9, 0.5, 0.999, 1.0}) {
           INFO(name << (variate == control_variate::on ? ", control variate" : "") << ", start " << start << ", f "
                     << (f == interior ? "interior" : f == falling ? "falling" : "with zeros"));
-          rule_options<TestType, 2> options;
+          auto options = phimis::without_floors<TestType, 2>();
           options.start = {{static_cast<TestType>(start), static_cast<TestType>(1 - start)}};
           const auto rule = learn(divergence, all, variate, options);
           CHECK(rule.status() == rule_status::updated);
@@ -228,7 +229,7 @@ TEMPLATE_TEST_CASE("A mixture without variance is found exactly from 20 samples"
 TEMPLATE_TEST_CASE("An integrand that is one technique's pdf takes that technique alone", "", float, double) {
   const auto all = two_triangles::observe<TestType>(two_triangles::p1, 0.5, 100, 4);
   for (const auto variate : {control_variate::on, control_variate::off}) {
-    rule_options<TestType, 2> options;
+    auto options = phimis::without_floors<TestType, 2>();
     options.floors = {{TestType(0.05), TestType(0.1)}};
     for_each_divergence([&](const char* name, const auto& divergence) {
       INFO(name);
@@ -245,7 +246,7 @@ TEMPLATE_TEST_CASE("A technique that alone reaches f keeps a fraction", "", floa
   auto all = two_triangles::observe<TestType>(two_triangles::p1, 0.5, 90, 5);
   for (int j = 0; j < 10; ++j) all.push_back({1, {{0, 2}}, 1, 1});
   for (const double gamma : {0.1, 1.0, 3.0}) {
-    rule_options<TestType, 2> options;
+    auto options = phimis::without_floors<TestType, 2>();
     options.start = {{1, 0}};
     const auto rule = learn(phimis::tsallis{gamma}, all, control_variate::on, options);
     CHECK(rule.status() == rule_status::updated);
@@ -272,7 +273,7 @@ TEMPLATE_TEST_CASE("No scale of f changes a fraction", "", float, double) {
   const auto all = two_batches<TestType>(interior, 100, 6);
   for (const auto variate : {control_variate::on, control_variate::off}) {
     for (const TestType prior : {TestType(0), TestType(10)}) {
-      rule_options<TestType, 2> options;
+      auto options = phimis::without_floors<TestType, 2>();
       options.prior = prior;
       for_each_divergence([&](const char* name, const auto& divergence) {
         INFO(name << ", prior " << prior);
@@ -366,7 +367,7 @@ TEST_CASE("What is dropped changes no fraction, however large it is") {
 
 TEMPLATE_TEST_CASE("A divergence that is infinite at f = 0 says so and leaves the fractions", "", float, double) {
   const auto all = two_batches<TestType>(with_zeros, 100, 13);
-  rule_options<TestType, 2> options;
+  auto options = phimis::without_floors<TestType, 2>();
   options.start = {{TestType(0.25), TestType(0.75)}};
   for_each_divergence([&](const char* name, const auto& divergence) {
     INFO(name);
@@ -398,7 +399,7 @@ TEST_CASE("With a prior, Kullback-Leibler is the most likely mixture under a Dir
         const long double x = high - golden * (high - low), y = low + golden * (high - low);
         (likelihood(x) < likelihood(y) ? low : high) = likelihood(x) < likelihood(y) ? x : y;
       }
-      rule_options<double, 2> options;
+      auto options = phimis::without_floors<double, 2>();
       options.start = {{pi, 1 - pi}};
       options.prior = prior;
       const auto rule = learn(phimis::kullback_leibler{}, all, control_variate::off, options);
@@ -412,7 +413,7 @@ TEST_CASE("With a prior, Kullback-Leibler is the most likely mixture under a Dir
 TEST_CASE("With a prior the optimality condition holds for every divergence") {
   // The prior adds prior · (s(μ̂ π_1/α_1) − s(μ̂ π_2/α_2)); with control variates α and π in units of normalised pdfs.
   const auto all = two_batches<double>(interior, 60, 15);
-  rule_options<double, 2> options;
+  auto options = phimis::without_floors<double, 2>();
   options.start = {{0.7, 0.3}};
   options.prior = 20;
   for (const auto variate : {control_variate::on, control_variate::off}) {
@@ -459,7 +460,7 @@ TEST_CASE("The multi-sample variance ends in a minimum, and says that it may be 
     };
     for (const auto variate : {control_variate::on, control_variate::off}) {
       for (const double start : {0.0, 0.5, 1.0}) {
-        rule_options<double, 2> options;
+        auto options = phimis::without_floors<double, 2>();
         options.start = {{start, 1 - start}};
         const auto rule = learn(phimis::multi_sample_variance{}, all, variate, options);
         REQUIRE(rule.status() == rule_status::local);
@@ -479,7 +480,7 @@ TEST_CASE("Of the two local minima of the multi-sample variance each start finds
                                  {.03, {{.444, .031}}, 0.25, 0},
                                  {.0064, {{.518, .008}}, 0.25, 0},
                                  {.07, {{.034, .012}}, 0.25, 0}};
-  rule_options<double, 2> options;
+  auto options = phimis::without_floors<double, 2>();
   options.start = {{0, 1}};
   CHECK(learn(phimis::multi_sample_variance{}, all, control_variate::off, options).fractions()[0] == 0);
   options.start = {{0.3, 0.7}};

@@ -45,7 +45,7 @@ long double one_step(const observations<Real>& all, long double beta, long doubl
 
 template <class Divergence, class Real>
 newton_raphson<Divergence, Real> at(const Divergence& divergence, newton_form form, double alpha) {
-  rule_options<Real, 2> options;
+  auto options = phimis::without_floors<Real, 2>();
   options.start = {{static_cast<Real>(alpha), 1 - static_cast<Real>(alpha)}};
   return newton_raphson<Divergence, Real>(divergence, form, options);
 }
@@ -120,7 +120,7 @@ TEMPLATE_TEST_CASE("No scale of f changes the step", "", float, double) {
       for (const TestType prior : {TestType(0), TestType(5)}) {
         INFO("exponent " << divergence.exponent() << ", prior " << prior);
         const auto learn = [&](TestType scale) {
-          rule_options<TestType, 2> options;
+          auto options = phimis::without_floors<TestType, 2>();
           options.start = {{TestType(0.4), TestType(0.6)}};
           options.prior = prior;
           newton_raphson<divergence_type, TestType> rule(divergence, form, options);
@@ -209,7 +209,7 @@ TEMPLATE_TEST_CASE("Iterates that leave the simplex are counted and brought back
   // f is steeper than any mixture: the step goes far beyond 1.
   const auto all = two_triangles::observe<TestType>([](double x) { return std::pow(1 - x, 6); }, 0.5, 200, 1);
   for (const auto form : {newton_form::paper, newton_form::safeguarded}) {
-    rule_options<TestType, 2> options;
+    auto options = phimis::without_floors<TestType, 2>();
     options.floors = {{TestType(0.01), TestType(0.01)}};
     newton_raphson<phimis::tsallis, TestType> rule({0.1}, form, options);
     for (const auto& o : all) rule.observe(o);
@@ -226,7 +226,7 @@ TEMPLATE_TEST_CASE("Iterates that leave the simplex are counted and brought back
 TEMPLATE_TEST_CASE("A step below the floor goes half the way in the safeguarded form", "", float, double) {
   const auto all = two_triangles::observe<TestType>([](double x) { return std::pow(x, 6); }, 0.5, 200, 1);
   REQUIRE(one_step(all, 0.1L, 0.5L, true) < -0.05L);
-  rule_options<TestType, 2> options;
+  auto options = phimis::without_floors<TestType, 2>();
   options.floors = {{TestType(0.1), 0}};
   newton_raphson<phimis::tsallis, TestType> rule({0.1}, newton_form::safeguarded, options);
   for (const auto& o : all) rule.observe(o);
@@ -262,7 +262,7 @@ TEMPLATE_TEST_CASE("The prior is an observation of each technique where only it 
     // At the start π = α, both scores are those of the mean: the prior only adds slope.
     const long double s = std::pow(mean, static_cast<long double>(gamma));
     slope += prior * gamma * s * (1 / alpha + 1 / (1 - alpha));
-    rule_options<TestType, 2> options;
+    auto options = phimis::without_floors<TestType, 2>();
     options.start = {{TestType(0.4), TestType(0.6)}};
     options.prior = TestType(prior);
     newton_raphson<phimis::tsallis, TestType> rule({gamma}, newton_form::paper, options);
@@ -274,7 +274,7 @@ TEMPLATE_TEST_CASE("The prior is an observation of each technique where only it 
 }
 
 TEMPLATE_TEST_CASE("A prior pulls fractions back to the start from anywhere", "", float, double) {
-  rule_options<TestType, 2> options;
+  auto options = phimis::without_floors<TestType, 2>();
   options.start = {{TestType(0.3), TestType(0.7)}};
   options.prior = TestType(1e6);
   newton_raphson<phimis::kullback_leibler, TestType> rule({}, newton_form::safeguarded, options);

@@ -55,7 +55,8 @@ true_sums naively(const Divergence& divergence, const rows<Real>& on, const pair
     const long double p2 = at.kappa[1] * static_cast<long double>(on.y2[j]);
     const long double p = at.alpha[0] * p1 + at.alpha[1] * p2;
     const long double w = on.w[j];
-    const auto s = phimis::score_at(divergence, at.unit * static_cast<long double>(on.u[j]) / p);
+    auto s = phimis::score_at(divergence, at.unit * static_cast<long double>(on.u[j]) / p);
+    s.value -= phimis::score_at_zero(divergence);
     sums.zeta += w * (p1 - p2) * s.value;
     sums.slope += w * (p1 - p2) * (p1 - p2) / p * s.slope;
     sums.lambda += w * p * (std::fabs(s.value) + (slope_counts ? s.slope : 0));

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Defects that reviews found, each kept as a test of what must hold.
+#include "catch.hpp"
+
+#include <phimis/analysis/optimum.hpp>
+#include <phimis/phimis.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+namespace {
+
+using phimis::control_variate;
+using phimis::observation;
+using phimis::rule_status;
+
+struct uniform_on {
+  double lower, upper;
+  double pdf(double x) const { return x >= lower && x <= upper ? 1 / (upper - lower) : 0; }
+  template <class Next>
+  double sample(Next&& next) const {
+    return lower + (upper - lower) * next();
+  }
+};
+
+/// p = 2x on [0, 1], of which the part above `reach` is lost.
+struct rising_to {
+  double reach;
+  double pdf(double x) const { return x >= 0 && x <= reach ? 2 * x : 0; }
+  template <class Next>
+  double sample(Next&& next) const {
+    const double x = std::sqrt(next());
+    return x <= reach ? x : -1;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("V[F] is minimised downhill of the start, from every start") {
+  // Four points, one observation each, that has two local minima: α = 0 and α = .203166.
+  const double p1[] = {.004, .444, .518, .034}, p2[] = {.949, .031, .008, .012}, f[] = {1.29, .03, .0064, .07};
+  const auto learn = [&](double start) {
+    phimis::exact_minimiser<phimis::multi_sample_variance, phimis::fixed_table<double, 2, 4>> rule(
+        {}, {.start = {start, 1 - start}, .floors = {}}, control_variate::off);
+    for (int i = 0; i < 4; ++i) rule.observe({f[i], {{p1[i], p2[i]}}, 0.25, 0});
+    CHECK(rule.update() == rule_status::local);
+    return rule.fractions()[0];
+  };
+  CHECK(learn(0) == 0);
+  for (const double start : {0.15, 0.2, 0.25, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99, 1.0}) {
+    INFO("start " << start);
+    CHECK(std::fabs(learn(start) - 0.203166) < 1e-6);
+  }
+}
+
+TEST_CASE("A lost sample counts: f = 0 where every pdf is 0") {
+  phimis::estimator<double, 2> estimator;
+  const phimis::fractions<double, 2> half{{0.5, 0.5}};
+  estimator.add(0, phimis::contribution(phimis::balance{}, 0, 0.0, half, {{0, 0}}));
+  estimator.add(0, phimis::contribution(phimis::power{}, 0, 0.0, half, {{0, 0}}));
+  CHECK(estimator.zero() == 2);
+  CHECK(estimator.nonfinite() == 0);
+  // Where f is not 0 it is a defect.
+  estimator.add(0, phimis::contribution(phimis::balance{}, 0, 1.0, half, {{0, 0}}));
+  CHECK(estimator.nonfinite() == 1);
+
+  phimis::row<double, 2> row;
+  CHECK(phimis::to_row(observation<double, 2>{0, {{0, 0}}, 0, 0}, row));
+  CHECK(row.u == 0);
+  CHECK_FALSE(phimis::to_row(observation<double, 2>{1, {{0, 0}}, 0, 0}, row));
+}
+
+TEST_CASE("Lost samples are worth nothing to any divergence") {
+  // The same integral with the samples above .7 lost, pdfs 0, or present with f = 0 and their pdfs.
+  const auto f = [](double x) { return x > 0 && x <= 0.7 ? 1 + x * x : 0; };
+  const phimis::technique_set present(rising_to{1}, uniform_on{0, 1});
+  const phimis::technique_set lost(rising_to{0.7}, uniform_on{0, 1});
+  const auto learn = [&](const auto& divergence, const auto& techniques) {
+    auto rule = phimis::exact_rule(divergence, {}, control_variate::off);
+    std::mt19937_64 engine(5);
+    auto next = [&] { return phimis::uniform(engine()); };
+    phimis::draw_batch(f, techniques, rule.fractions(), {.samples = 40000}, phimis::balance{}, next,
+                       [&](const auto& sample) { rule.observe(sample.observed); });
+    rule.update();
+    return rule.fractions()[0];
+  };
+  // The oracle on defective pdfs; fractions from 40000 samples have a standard error of about .01.
+  const phimis::analysis::problem on(f, lost, phimis::interval(0, 1), {0.7},
+                                     phimis::analysis::normalisation::defective);
+  const auto check = [&](const auto& divergence) {
+    const double exact = phimis::analysis::optimum(divergence, on, {}).alpha[0];
+    CHECK(std::fabs(learn(divergence, lost) - exact) < 0.05);
+    // Whether the integrand ends or the pdf does is the same to the rule where p is the same on f's support.
+    CHECK(std::fabs(learn(divergence, present) - learn(divergence, lost)) < 0.05);
+  };
+  check(phimis::chi_squared{});
+  check(phimis::kullback_leibler{});
+  check(phimis::pearson_vajda{2});
+  check(phimis::multi_sample_variance{});
+}
+
+TEST_CASE("V[F] of an integrand that changes sign is that of f, not of its magnitude") {
+  const phimis::technique_set two(rising_to{1}, uniform_on{0, 1});
+  const phimis::analysis::problem on([](double x) { return x - 0.35; }, two, phimis::interval(0, 1));
+  const auto best = phimis::analysis::optimum(phimis::multi_sample_variance{}, on).alpha;
+  const auto variance = [&](double a) { return phimis::analysis::variance(on, {{a, 1 - a}}).multi_sample.value; };
+  for (double a = 0.01; a < 1; a += 0.01) CHECK(variance(best[0]) <= variance(a) + 1e-15);
+}
+
+TEST_CASE("By default no technique is given up for good") {
+  // Only the first technique reaches x < .01, where half of the integral is.
+  const phimis::technique_set two(uniform_on{0, 1}, uniform_on{0.01, 1});
+  const auto f = [](double x) { return x < 0.01 ? 100 : x; };
+  phimis::moments<double> estimates;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    estimates.add(phimis::integrate(f, two, {.seed = seed}, phimis::exact_rule(phimis::chi_squared{})).estimate);
+  }
+  // |z| < 4.5: a false alarm in 1 of 150 000.
+  const double z = (estimates.mean - 1.49995) / std::sqrt(estimates.variance() / 2000);
+  CHECK(std::fabs(z) < 4.5);
+}
+
+TEST_CASE("Where the pdfs are proportional on the sample, fractions stay") {
+  phimis::exact_minimiser<phimis::chi_squared, phimis::fixed_table<double, 2, 64>> rule;
+  std::mt19937_64 engine(3);
+  for (int j = 0; j < 64; ++j) {
+    const double x = phimis::uniform(engine());
+    rule.observe({1 + x, {{1, 1 / 0.9}}, 0.5 + 0.5 / 0.9, 0});
+  }
+  CHECK(rule.update() == rule_status::updated);
+  CHECK(rule.fractions()[0] == Approx(0.5).epsilon(1e-14));
+}
+
+TEST_CASE("One sample an iteration has the spread of all, not none") {
+  const phimis::technique_set two(rising_to{1}, uniform_on{0, 1});
+  const auto f = [](double x) { return 1 + x * x; };
+  phimis::moments<double> estimates, claimed;
+  for (std::uint64_t seed = 1; seed <= 4000; ++seed) {
+    const auto run =
+        phimis::integrate(f, two, {.budget = 25, .iterations = 25, .seed = seed}, phimis::fixed_rule<2>());
+    estimates.add(run.estimate);
+    claimed.add(run.standard_error * run.standard_error);
+  }
+  // Not less than the truth, and of its size: the sample variance of 4000 runs is known to 2 %.
+  CHECK(claimed.mean > 0.9 * estimates.variance());
+  CHECK(claimed.mean < 1.5 * estimates.variance());
+  CHECK(phimis::integrate(f, two, {.budget = 1, .iterations = 1}).standard_error ==
+        std::numeric_limits<double>::infinity());
+}
+
+TEMPLATE_TEST_CASE("Estimates have no scale", "", float, double) {
+  const bool single = std::is_same<TestType, float>::value;
+  const phimis::fractions<TestType, 2> half{{TestType(0.5), TestType(0.5)}};
+  const auto sum = [&](TestType scale) {
+    phimis::estimator<TestType, 2> estimator;
+    for (int j = 0; j < 20; ++j) {
+      const TestType y = scale * static_cast<TestType>(1 + j % 7);
+      estimator.add(j % 2, phimis::contribution(phimis::balance{}, j % 2, y, half, {{1, 1}}));
+    }
+    return estimator;
+  };
+  using phimis::sampling_model;
+  const auto one = sum(1);
+  for (const TestType scale :
+       {single ? TestType(1e-30) : TestType(1e-300), single ? TestType(1e30) : TestType(1e300)}) {
+    const auto scaled = sum(scale);
+    CHECK(scaled.effective_sample_size() == Approx(one.effective_sample_size()).epsilon(1e-5));
+    CHECK(scaled.standard_error(sampling_model::multi_sample) / scale ==
+          Approx(one.standard_error(sampling_model::multi_sample)).epsilon(1e-5));
+    auto merged = one;
+    merged.merge(scaled);
+    CHECK(phimis::is_finite(merged.estimate()));
+  }
+}
+
+TEST_CASE("A scale of the integrand changes no combination") {
+  const phimis::technique_set two(rising_to{1}, uniform_on{0, 1});
+  const auto run = [&](double scale, const auto& combination) {
+    return phimis::integrate([scale](double x) { return scale * (1 + x * x); }, two, combination);
+  };
+  for (const double scale : {1e-250, 1e250}) {
+    CHECK(run(scale, phimis::inverse_variance{}).estimate / scale ==
+          Approx(run(1, phimis::inverse_variance{}).estimate).epsilon(1e-12));
+    CHECK(run(scale, phimis::by_count{}).standard_error / scale ==
+          Approx(run(1, phimis::by_count{}).standard_error).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("What a full table refuses does not make a divergence infinite") {
+  using rule_type =
+      phimis::exact_minimiser<phimis::reversed<phimis::kullback_leibler>, phimis::fixed_table<double, 2, 10>>;
+  rule_type rule;
+  for (int j = 0; j < 10; ++j) rule.observe({1.0 + j, {{1, 0.5 + 0.1 * j}}, 1, 0});
+  rule.observe({0, {{1, 1}}, 1, 0});
+  CHECK(rule.counters().dropped == 1);
+  CHECK(rule.update() == rule_status::updated);
+}
+
+TEST_CASE("A start without a technique, and a prior, is solved and not a NaN") {
+  phimis::exact_minimiser<phimis::kullback_leibler, phimis::fixed_table<double, 2, 20>> exact(
+      {}, {.start = {0, 1}, .floors = {}, .prior = 5});
+  phimis::newton_raphson<phimis::kullback_leibler> newton({}, phimis::newton_form::safeguarded,
+                                                          {.start = {0, 1}, .floors = {}, .prior = 5});
+  for (int j = 0; j < 20; ++j) {
+    const observation<double, 2> sample{2.0 * j + 1, {{2.0 * j + 1, 20}}, 20, 1};
+    exact.observe(sample);
+    newton.observe(sample);
+  }
+  CHECK(exact.update() == rule_status::updated);
+  CHECK(exact.fractions()[0] >= 0);
+  CHECK(exact.fractions()[0] <= 1);
+  CHECK(exact.residual() <= 1e-12);
+  CHECK(newton.update() == rule_status::updated);
+  CHECK(newton.fractions()[0] > 0);
+}
+
+TEST_CASE("A rule merged with itself has its observations twice") {
+  auto rule = phimis::exact_rule(phimis::chi_squared{});
+  for (int j = 0; j < 10; ++j) rule.observe({1.0 + j, {{1, 0.5 + 0.1 * j}}, 1, 0});
+  rule.merge(rule);
+  CHECK(rule.table().size() == 20);
+}
+
+TEST_CASE("Pdfs that are no densities are counted under every weight heuristic") {
+  const phimis::fractions<double, 2> half{{0.5, 0.5}};
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1.0}) {
+    phimis::estimator<double, 2> estimator;
+    estimator.add(0, phimis::contribution(phimis::balance{}, 0, 1.0, half, {{bad, 1}}));
+    estimator.add(0, phimis::contribution(phimis::power{}, 0, 1.0, half, {{bad, 1}}));
+    estimator.add(0, phimis::contribution(phimis::maximum{}, 0, 1.0, half, {{bad, 1}}));
+    estimator.add(1, phimis::contribution(phimis::cutoff{}, 1, 1.0, half, {{1, bad}}));
+    CHECK(estimator.nonfinite() == 4);
+  }
+}
+
+TEST_CASE("Combinations may take their arguments by value, and must return weights") {
+  const phimis::technique_set two(rising_to{1}, uniform_on{0, 1});
+  const auto f = [](double x) { return 1 + x; };
+  const auto equal = [](auto iterations, auto weights) {
+    for (std::size_t b = 0; b < iterations.size(); ++b) weights[b] = 1;
+  };
+  CHECK(phimis::is_finite(phimis::integrate(f, two, equal).estimate));
+  const auto nothing = [](auto, auto) {};
+  CHECK_THROWS_AS(phimis::integrate(f, two, nothing), std::invalid_argument);
+}
