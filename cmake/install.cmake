@@ -7,9 +7,11 @@ set(phimis_package_dir "${CMAKE_INSTALL_DATADIR}/cmake/phimis")
 
 # Two exports: whoever takes only core must not meet the name of Eigen.
 install(TARGETS phimis_core EXPORT phimis-core-targets FILE_SET HEADERS)
-install(TARGETS phimis_phimis EXPORT phimis-targets FILE_SET HEADERS)
 install(EXPORT phimis-core-targets NAMESPACE phimis:: DESTINATION "${phimis_package_dir}")
-install(EXPORT phimis-targets NAMESPACE phimis:: DESTINATION "${phimis_package_dir}")
+if(TARGET phimis_phimis)
+  install(TARGETS phimis_phimis EXPORT phimis-targets FILE_SET HEADERS)
+  install(EXPORT phimis-targets NAMESPACE phimis:: DESTINATION "${phimis_package_dir}")
+endif()
 
 configure_package_config_file(cmake/phimis-config.cmake.in "${CMAKE_CURRENT_BINARY_DIR}/phimis-config.cmake"
                               INSTALL_DESTINATION "${phimis_package_dir}" NO_SET_AND_CHECK_MACRO)

@@ -7,7 +7,7 @@ usage="usage: examples/reproduce.sh [--quick|--full] [FOLDER]
 
   FOLDER    where tables, figures and their data go; build/reproduction by default
   --quick   few repetitions: a check that everything runs
-  --full    the papers' own protocol; without either, about ten minutes on two cores
+  --full    the papers' own protocol, repeated; without either, within ten minutes on two cores
   --help    this"
 
 programs="tsallis_figures"
