@@ -8,6 +8,7 @@
 #include <phimis/core/observation.hpp>
 
 #include <cstdint>
+#include <type_traits>
 
 namespace phimis {
 
@@ -57,7 +58,11 @@ auto draw_batch(const Integrand& f, const Techniques& techniques, const fraction
     const auto x = techniques.sample(k, next);
     drawn_sample<value, M> sample{{}, f(x), value_traits<value>::zero()};
     sample.observed.pdfs = techniques.pdfs(x);
-    sample.observed.f = static_cast<double>(value_traits<value>::magnitude(sample.value));
+    if constexpr (std::is_floating_point_v<value>) {
+      sample.observed.f = static_cast<double>(sample.value);
+    } else {
+      sample.observed.f = static_cast<double>(value_traits<value>::magnitude(sample.value));
+    }
     sample.observed.q = mixture(result.fractions, sample.observed.pdfs);
     sample.observed.technique = k;
     sample.contribution = contribution(heuristic, k, sample.value, result.fractions, sample.observed.pdfs);
