@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 
 namespace {
 
@@ -54,43 +55,52 @@ outcome exact(double gamma) {
 
 void check_share(double ours, double printed) {
   const double error = std::sqrt(2 * printed * (1 - printed) / runs);
-  CHECK(std::fabs(ours - printed) <= 3 * error + 0.0005);
+  if (printed > 0) {
+    CHECK(std::fabs(ours - printed) <= 3 * error + 0.0005);
+  } else {
+    CHECK(ours <= 3.0 / runs);  // none of 2000: 95 % sure of a share below that
+  }
+}
+
+/// What a prototype measured; a negative number was not printed or is infinite.
+struct printed {
+  const char* example;
+  double gamma;
+  double median;
+  double ninetieth;
+  double left;
+};
+
+/// measure<Paper>(gamma) for the example of that name.
+template <class Measure>
+outcome of_example(const printed& row, const Measure& measure) {
+  const std::string example = row.example;
+  if (example == "T1") return measure(papers::tsallis_1{}, row.gamma);
+  if (example == "T2") return measure(papers::tsallis_2{}, row.gamma);
+  return measure(papers::tsallis_3{}, row.gamma);
 }
 
 }  // namespace
 
 TEST_CASE("Newton-Raphson by the paper's protocol is as good as it was measured, and as fragile") {
-  const auto t1 = newton<papers::tsallis_1>(1, 0);
-  check_close(t1.median, 1.049);
-  check_close(t1.ninetieth, 1.694);
-  check_share(t1.left, 0.013);
-  const auto t1_variance = newton<papers::tsallis_1>(2, 0);
-  check_close(t1_variance.median, 1.013);
-  check_close(t1_variance.ninetieth, 1.122);
-  CHECK(t1_variance.left <= 0.0015);
-  const auto t2 = newton<papers::tsallis_2>(1, 0);
-  check_close(t2.median, 0.083);
-  check_close(t2.ninetieth, 0.70);
-  check_share(t2.left, 0.0025);
-  const auto t2_variance = newton<papers::tsallis_2>(2, 0);
-  check_close(t2_variance.median, 0.020);
-  check_close(t2_variance.ninetieth, 0.136);
-  const auto t3 = newton<papers::tsallis_3>(1, 0);
-  check_close(t3.median, 1.550);
-  check_share(t3.left, 0.22);
-  const auto t3_variance = newton<papers::tsallis_3>(2, 0);
-  check_close(t3_variance.median, 1.100);
-  check_close(t3_variance.ninetieth, 2.043);
-  check_share(t3_variance.left, 0.014);
+  for (const printed& row :
+       {printed{"T1", 1, 1.049, 1.694, .013}, printed{"T1", 2, 1.013, 1.122, 0}, printed{"T2", 1, .083, .70, .0025},
+        printed{"T2", 2, .020, .136, 0}, printed{"T3", 1, 1.550, -1, .22}, printed{"T3", 2, 1.100, 2.043, .014}}) {
+    CAPTURE(row.example, row.gamma);
+    const auto ours = of_example(row, [](auto paper, double gamma) { return newton<decltype(paper)>(gamma, 0); });
+    check_close(ours.median, row.median);
+    if (row.ninetieth > 0) check_close(ours.ninetieth, row.ninetieth);
+    check_share(ours.left, row.left);
+  }
 }
 
 TEST_CASE("Newton-Raphson with floors of .01 is as good as it was measured") {
-  const auto t3 = newton<papers::tsallis_3>(1, 0.01);
-  check_close(t3.median, 1.491);
-  check_close(t3.ninetieth, 11.0);
-  const auto t3_variance = newton<papers::tsallis_3>(2, 0.01);
-  check_close(t3_variance.median, 1.100);
-  check_close(t3_variance.ninetieth, 2.02);
+  for (const printed& row : {printed{"T3", 1, 1.491, 11.0, -1}, printed{"T3", 2, 1.100, 2.02, -1}}) {
+    CAPTURE(row.example, row.gamma);
+    const auto ours = of_example(row, [](auto paper, double gamma) { return newton<decltype(paper)>(gamma, 0.01); });
+    check_close(ours.median, row.median);
+    check_close(ours.ninetieth, row.ninetieth);
+  }
 }
 
 TEST_CASE("At small gamma the paper's protocol leaves the simplex in most runs, the exact minimiser never") {
@@ -101,24 +111,14 @@ TEST_CASE("At small gamma the paper's protocol leaves the simplex in most runs, 
 }
 
 TEST_CASE("The exact minimiser with its control variate is at least as good as the best prototype") {
-  const auto t1_small = exact<papers::tsallis_1>(0.1);
-  check_not_worse(t1_small.median, 1.0021);
-  check_not_worse(t1_small.ninetieth, 1.0053);
-  const auto t1 = exact<papers::tsallis_1>(1);
-  check_not_worse(t1.median, 1.0017);
-  check_not_worse(t1.ninetieth, 1.0049);
-  const auto t1_variance = exact<papers::tsallis_1>(2);
-  check_not_worse(t1_variance.median, 1.0014);
-  check_not_worse(t1_variance.ninetieth, 1.0048);
-  const auto t3_half = exact<papers::tsallis_3>(0.5);
-  check_not_worse(t3_half.median, 1.052);
-  check_not_worse(t3_half.ninetieth, 1.170);
-  const auto t3 = exact<papers::tsallis_3>(1);
-  check_not_worse(t3.median, 1.024);
-  check_not_worse(t3.ninetieth, 1.103);
-  const auto t3_variance = exact<papers::tsallis_3>(2);
-  check_not_worse(t3_variance.median, 1.0059);
-  check_not_worse(t3_variance.ninetieth, 1.0350);
+  for (const printed& row : {printed{"T1", .1, 1.0021, 1.0053, 0}, printed{"T1", 1, 1.0017, 1.0049, 0},
+                             printed{"T1", 2, 1.0014, 1.0048, 0}, printed{"T3", .5, 1.052, 1.170, 0},
+                             printed{"T3", 1, 1.024, 1.103, 0}, printed{"T3", 2, 1.0059, 1.0350, 0}}) {
+    CAPTURE(row.example, row.gamma);
+    const auto ours = of_example(row, [](auto paper, double gamma) { return exact<decltype(paper)>(gamma); });
+    check_not_worse(ours.median, row.median);
+    check_not_worse(ours.ninetieth, row.ninetieth);
+  }
 }
 
 TEST_CASE("A zero-variance mixture is found exactly from finite samples") {
