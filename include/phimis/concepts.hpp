@@ -8,7 +8,6 @@
 #include <phimis/core/rule.hpp>
 
 #include <concepts>
-#include <span>
 #include <type_traits>
 
 namespace phimis {

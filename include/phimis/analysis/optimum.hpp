@@ -15,7 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <type_traits>
 #include <vector>
 
 namespace phimis::analysis {
@@ -124,8 +124,8 @@ pair_optimum optimum(const Divergence& divergence, const problem<2>& on,
                      const rule_options<double, 2>& options = without_floors<double, 2>()) {
   validate(divergence);
   validate(options);
-  const table<double, 2> rows = on.rows();
   if (infinite_at_zero(divergence)) {
+    const table<double, 2> rows = on.rows();
     std::ptrdiff_t zeros = 0;
     for (std::ptrdiff_t j = 0; j < rows.size(); ++j) zeros += rows[j].u > 0 ? 0 : 1;
     require(zeros == 0, "divergence", "is infinite where f = 0 < p; number of such nodes", zeros);
