@@ -51,6 +51,8 @@ void validate(const rule_options<Real, M>& options) {
   for (int k = 0; k < M; ++k) {
     require(is_density(options.floors[k]), "floors", "must be finite and not negative", options.floors[k]);
     require(is_density(options.start[k]), "start", "must be finite and not negative", options.start[k]);
+    require(is_density(options.costs[k]) && options.costs[k] > 0, "costs", "must be finite and greater than 0",
+            options.costs[k]);
     floors += options.floors[k];
     start += options.start[k];
   }

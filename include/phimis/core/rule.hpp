@@ -45,9 +45,18 @@ PHIMIS_HOST_DEVICE constexpr per_technique<Real, M> defensive_floors() noexcept 
   return floors;
 }
 
-/// What every rule takes: where to start, what to keep, how much to trust the start.
+/// The costs of techniques that all cost the same.
+template <class Real, int M>
+PHIMIS_HOST_DEVICE constexpr per_technique<Real, M> equal_costs() noexcept {
+  per_technique<Real, M> costs{};
+  for (int k = 0; k < M; ++k) costs[k] = 1;
+  return costs;
+}
+
+/// What every rule takes: where to start, what to keep, how much to trust the start, what a sample costs.
 ///
-/// Requires start on the simplex; floors_k >= 0, Σ floors <= 1; prior >= 0. A start below a floor is raised to it.
+/// Requires start on the simplex; floors_k >= 0, Σ floors <= 1; prior >= 0; costs_k > 0. A start below a floor is raised
+/// to it. A rule that knows nothing of costs, or of frozen techniques, says so.
 template <class Real, int M>
 struct rule_options {
   fractions<Real, M> start = equal_fractions<Real, M>();
@@ -57,6 +66,10 @@ struct rule_options {
   /// Weight of the start fractions π in units of samples: the objective is n D(g, p(α)) + prior · D(π, α). For the
   /// Kullback–Leibler divergence this is the Dirichlet prior of concentration prior · π.
   Real prior = 0;
+  /// What a sample of each technique costs, in any unit: cost-aware rules minimise Σ c_k α_k times what they minimise.
+  per_technique<Real, M> costs = equal_costs<Real, M>();
+  /// Techniques whose fraction stays at the start.
+  per_technique<bool, M> frozen{};
 };
 
 /// Options in which a technique may be given up: for those who know that no technique alone reaches any part of f.
