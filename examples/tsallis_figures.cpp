@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // test: --quick --output reproduction
+#include <papers/program.hpp>
+#include <papers/report.hpp>
 #include <papers/tsallis_report.hpp>
 
-#include <CLI/CLI.hpp>
-
-#include <cstdint>
 #include <cstdio>
 #include <sstream>
 #include <string>
@@ -14,13 +13,6 @@
 // Tsallis φ-Divergences", Entropy 24 (2022) 1240, Secs. 5 to 7 and 9.
 
 namespace {
-
-struct arguments {
-  std::string output = "reproduction";
-  std::uint64_t seed = 1;
-  bool quick = false;
-  bool full = false;
-};
 
 constexpr int full_repetitions = 200;
 
@@ -64,25 +56,16 @@ std::string runs_table(const std::vector<const papers::tsallis_study*>& studies)
   return text;
 }
 
-std::string page(const papers::comparisons& table, const std::vector<papers::captioned_figure>& all,
-                 const std::vector<const papers::tsallis_study*>& studies, const arguments& given) {
-  const std::string effort = given.full ? " --full" : given.quick ? " --quick" : "";
+std::string section(const papers::comparisons& table, const std::vector<papers::captioned_figure>& all,
+                    const std::vector<const papers::tsallis_study*>& studies, const papers::arguments& given) {
   std::ostringstream text;
-  text << "# Reproduction\n\n"
-          "Made by `sh examples/reproduce.sh"
-       << effort
-       << "`, which writes this page, `tables.csv` and `figures/`, with the data behind each figure as CSV. Do not "
-          "edit it: run the command again.\n\n"
-          "## Tsallis divergences\n\n"
+  text << "## Tsallis divergences\n\n"
           "M. Sbert, L. Szirmay-Kalos: Robust Multiple Importance Sampling with Tsallis φ-Divergences. Entropy 24 "
           "(2022) 1240. Every pdf is truncated to the integration domain and renormalised there; the paper does not "
-          "say so, but no other reading gives its numbers. Variances are for N = 1 sample.\n\n"
-          "### Printed numbers and statements\n\n"
-       << table.markdown() << "\n### Figures\n\n";
-  for (const papers::captioned_figure& one : all) {
-    text << "![" << one.caption << "](figures/" << one.name << ".svg)\n\n"
-         << one.caption << ". Data: [" << one.name << ".csv](figures/" << one.name << ".csv).\n\n";
-  }
+          "say so, but no other reading gives its numbers. Variances are for N = 1 sample. Made by `tsallis_figures"
+       << given.effort() << "`.\n\n### Printed numbers and statements\n\n"
+       << table.markdown() << "\n### Figures\n\n"
+       << papers::markdown(all);
   if (given.full) {
     text << "### Repeated runs\n\n"
             "V[F] at the fractions learnt from 5 × 100 samples over "
@@ -95,11 +78,11 @@ std::string page(const papers::comparisons& table, const std::vector<papers::cap
   return text.str();
 }
 
-int reproduce(const arguments& given) {
+int reproduce(const papers::arguments& given) {
   using namespace papers;
   require_gnuplot();
   const output_folder folder(given.output);
-  const output_folder drawings(folder.path() / "figures");
+  const output_folder drawings = figures_of(folder);
 
   const int stride = given.quick ? 10 : 1;
   const int repetitions = given.full ? full_repetitions : 0;
@@ -109,14 +92,10 @@ int reproduce(const arguments& given) {
   const std::vector<const tsallis_study*> studies{&first, &second, &third};
 
   const std::vector<captioned_figure> all = figures(first, second, third);
-  for (const captioned_figure& one : all) {
-    plot(one.drawing, drawings, one.name);
-    drawings.write(one.name + ".csv", one.csv);
-  }
+  write_figures(all, drawings);
   if (given.full) drawings.write("tsallis_repeated_runs.csv", repeated_runs_csv(studies));
   const comparisons table = tsallis_comparisons(first, second, third);
-  folder.write("tables.csv", table.csv());
-  folder.write("reproduction.md", page(table, all, studies, given));
+  write_report(folder, table, section(table, all, studies, given));
 
   std::printf(
       "V[F] for N = 1; learnt from 5 x 100 samples at gamma = 1\n"
@@ -126,40 +105,19 @@ int reproduce(const arguments& given) {
     std::printf("%7d  %10.6g    %10.6g    %10.4g      %10.4g       %10.4g\n", of->number, of->problem.mean().value,
                 of->equal_multi, of->least_multi.value, at.newton.variance, at.exact.variance);
   }
-  int agree = 0;
-  int surprises = 0;
-  for (const comparison& row : table.rows()) {
-    agree += row.found != agreement::none ? 1 : 0;
-    if (row.as_expected()) continue;
-    ++surprises;
-    std::fprintf(stderr, "tsallis_figures: %s: printed %s, computed %s, agrees: %s\n", row.item.c_str(),
-                 row.printed.c_str(), row.computed.c_str(), row.agrees().c_str());
-  }
-  std::printf("%d of %zu printed numbers and statements agree, the others are known to be wrong\n", agree,
-              table.rows().size());
   std::printf("%s: reproduction.md, tables.csv, figures/ (%zu figures)\n", folder.path().c_str(), all.size());
-  return surprises == 0 ? 0 : 1;
+  return conclude("tsallis_figures", table);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  arguments given;
-  CLI::App app(
-      "Figures 1 to 9 and the printed numbers of \"Robust Multiple Importance Sampling with Tsallis "
-      "phi-Divergences\"");
-  app.add_option("--output", given.output, "folder for figures, their data and tables")->capture_default_str();
-  app.add_option("--seed", given.seed, "of all random streams")->capture_default_str();
-  auto* const quick = app.add_flag("--quick", given.quick, "dots at 8 values of gamma in place of 80");
-  app.add_flag("--full", given.full, "also 200 repeated runs for each dot, summarised")->excludes(quick);
-  try {
-    app.parse(argc, argv);
-    return reproduce(given);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    std::fprintf(stderr, "tsallis_figures: %s; --help lists the options\n", error.what());
-  } catch (const papers::cannot_run& error) {
-    std::fprintf(stderr, "tsallis_figures: %s\n", error.what());
-  }
-  return 2;
+  return papers::run_program(
+      argc, argv,
+      {.name = "tsallis_figures",
+       .about = "Figures 1 to 9 and the printed numbers of \"Robust Multiple Importance Sampling with Tsallis "
+                "phi-Divergences\"",
+       .quick = "dots at 8 values of gamma in place of 80",
+       .full = "also 200 repeated runs for each dot, summarised"},
+      reproduce);
 }

@@ -78,6 +78,7 @@ class comparisons {
     rows_.push_back({paper_, item, printed, computed, holds ? agreement::rounded : agreement::none, expected, note});
   }
 
+  const std::string& paper() const noexcept { return paper_; }
   const std::vector<comparison>& rows() const noexcept { return rows_; }
 
   /// paper,item,printed,computed,agrees,note

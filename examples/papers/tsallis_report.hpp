@@ -4,6 +4,7 @@
 
 #include <papers/comparison.hpp>
 #include <papers/gnuplot.hpp>
+#include <papers/report.hpp>
 #include <papers/tsallis_study.hpp>
 
 #include <algorithm>
@@ -14,14 +15,6 @@
 // The Tsallis paper's figures and printed numbers, from the studies of its three examples.
 
 namespace papers {
-
-/// A figure, the name of its files, and the sentence that goes with it.
-struct captioned_figure {
-  std::string name;
-  std::string caption;
-  figure drawing;
-  std::string csv;
-};
 
 namespace detail {
 
