@@ -10,21 +10,31 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/exact_minimiser.hpp
     phimis/core/finite.hpp
     phimis/core/fractions.hpp
+    phimis/core/inverse_variance_fractions.hpp
     phimis/core/limits.hpp
+    phimis/core/minimise_rows.hpp
+    phimis/core/mixture_sums.hpp
     phimis/core/moments.hpp
     phimis/core/newton_raphson.hpp
     phimis/core/observation.hpp
     phimis/core/pack.hpp
     phimis/core/pair_sums.hpp
+    phimis/core/power_terms.hpp
     phimis/core/rule.hpp
+    phimis/core/second_order.hpp
+    phimis/core/sigma_proportional.hpp
+    phimis/core/simplex_newton.hpp
+    phimis/core/simplex_problem.hpp
     phimis/core/solve_pair.hpp
     phimis/core/table.hpp
+    phimis/core/technique_moments.hpp
     phimis/core/uniform.hpp
     phimis/core/value.hpp
     phimis/core/version.hpp
     phimis/core/weight_heuristic.hpp)
 
 set(PHIMIS_UPPER_HEADERS
+    phimis/analysis/allocation.hpp
     phimis/analysis/optimum.hpp
     phimis/analysis/problem.hpp
     phimis/analysis/variance.hpp
@@ -37,6 +47,7 @@ set(PHIMIS_UPPER_HEADERS
     phimis/interval.hpp
     phimis/phimis.hpp
     phimis/quadrature/panels.hpp
+    phimis/solver/minimise.hpp
     phimis/solver/rules.hpp
     phimis/solver/table.hpp
     phimis/technique/density.hpp

@@ -8,7 +8,10 @@
 #include <phimis/core/weight_heuristic.hpp>
 #include <phimis/error.hpp>
 
+#include <cstddef>
 #include <limits>
+#include <span>
+#include <type_traits>
 
 // Core cannot throw. What is built from its values above core is checked here first: each overload throws
 // std::invalid_argument that names the parameter, the rule and the value.
@@ -43,22 +46,45 @@ inline void validate(const cutoff& heuristic) {
           heuristic.threshold);
 }
 
+template <class Heuristic>
+void validate(const count_independent<Heuristic>& heuristic) {
+  validate(heuristic.inner);
+}
+
+/// Start, floors and costs of as many techniques as they have entries.
+template <class Real>
+void validate(std::span<const Real> start, std::span<const Real> floors, std::span<const Real> costs, Real prior) {
+  const Real rounding = 8 * static_cast<Real>(start.size()) * std::numeric_limits<Real>::epsilon();
+  Real least = 0;
+  Real all = 0;
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    require(is_density(floors[k]), "floors", "must be finite and not negative", floors[k]);
+    require(is_density(start[k]), "start", "must be finite and not negative", start[k]);
+    require(is_density(costs[k]) && costs[k] > 0, "costs", "must be finite and greater than 0", costs[k]);
+    least += floors[k];
+    all += start[k];
+  }
+  require(least <= 1 + rounding, "floors", "must sum to at most 1", least);
+  require(all >= 1 - rounding && all <= 1 + rounding, "start", "must sum to 1", all);
+  require(is_density(prior), "prior", "must be finite and not negative", prior);
+}
+
 template <class Real, int M>
 void validate(const rule_options<Real, M>& options) {
-  constexpr Real rounding = 8 * M * std::numeric_limits<Real>::epsilon();
-  Real floors = 0;
-  Real start = 0;
-  for (int k = 0; k < M; ++k) {
-    require(is_density(options.floors[k]), "floors", "must be finite and not negative", options.floors[k]);
-    require(is_density(options.start[k]), "start", "must be finite and not negative", options.start[k]);
-    require(is_density(options.costs[k]) && options.costs[k] > 0, "costs", "must be finite and greater than 0",
-            options.costs[k]);
-    floors += options.floors[k];
-    start += options.start[k];
+  validate<Real>(options.start.value, options.floors.value, options.costs.value, options.prior);
+}
+
+/// Costs that are not all the same need an objective that a cost multiplies: a positive power of f/p, or a variance.
+template <class Divergence, class Real>
+void validate_costs(const Divergence& divergence, std::span<const Real> costs) {
+  for (const Real cost : costs) {
+    if constexpr (has_exponent<Divergence>::value) {
+      require(cost == costs[0] || divergence.exponent() > 0, "costs",
+              "must be equal for a divergence whose score is no positive power of f/p", cost);
+    } else if constexpr (!std::is_same_v<Divergence, multi_sample_variance>) {
+      require(cost == costs[0], "costs", "must be equal for a divergence whose score is no power of f/p", cost);
+    }
   }
-  require(floors <= 1 + rounding, "floors", "must sum to at most 1", floors);
-  require(start >= 1 - rounding && start <= 1 + rounding, "start", "must sum to 1", start);
-  require(is_density(options.prior), "prior", "must be finite and not negative", options.prior);
 }
 
 }  // namespace phimis

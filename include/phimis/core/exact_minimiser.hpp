@@ -5,6 +5,7 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/limits.hpp>
+#include <phimis/core/minimise_rows.hpp>
 #include <phimis/core/pack.hpp>
 #include <phimis/core/pair_sums.hpp>
 #include <phimis/core/rule.hpp>
@@ -15,16 +16,6 @@
 #include <type_traits>
 
 namespace phimis {
-
-/// Whether each pdf is made to integrate to one on the sample.
-///
-/// E_q[p_k/q] = 1 is known. Dividing p_k by its mean Σ_j(p_kj/q_j)/n on the sample before the divergence is minimised
-/// removes most of the noise of the fractions, and makes a zero-variance mixture be found exactly from any sample. At
-/// the solution it is the control variate λ̂ Σ_j (p_kj/q_j − 1) with the self-normalised λ̂ = Σ(p/q)s / Σ(p/q), but the
-/// problem stays convex. It must be off where a pdf is defective (∫ p_k < 1).
-///
-/// Source the control variate is that of He & Owen 2014, for every score; as a normalisation, ours.
-enum class control_variate { on, off };
 
 /// The fractions that minimise a divergence on all observations ever made, solved to a KKT certificate.
 ///

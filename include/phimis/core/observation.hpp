@@ -32,26 +32,31 @@ struct row {
   Real y[M];
 };
 
-/// Writes the row of an observation and says whether it is one: false where a number in it, or their quotient, is
-/// not finite, where a pdf is negative, or where f ≠ 0 but q or all pdfs are 0. Such an observation is counted, never
+/// Writes the row u, w, y[m] of an observation and says whether it is one: false where a number in it, or their quotient,
+/// is not finite, where a pdf is negative, or where f ≠ 0 but q or all pdfs are 0. Such an observation is counted, never
 /// summed. A lost sample, f = 0 where every pdf is 0, is a row of zeros.
-template <class Real, int M>
-PHIMIS_HOST_DEVICE bool to_row(const observation<Real, M>& sample, row<Real, M>& out) noexcept {
+template <class Real>
+PHIMIS_HOST_DEVICE bool to_row(Real f, const Real* pdfs, int m, Real q, Real& u, Real& w, Real* y) noexcept {
   Real sum = 0;
-  for (int k = 0; k < M; ++k) {
-    if (!is_density(sample.pdfs[k])) return false;
-    sum += sample.pdfs[k];
+  for (int k = 0; k < m; ++k) {
+    if (!is_density(pdfs[k])) return false;
+    sum += pdfs[k];
   }
-  if (!is_finite(sample.f) || !is_density(sample.q) || !is_finite(sum)) return false;
-  if (sample.f == 0 && !(sum > 0)) {
-    out = row<Real, M>{};
+  if (!is_finite(f) || !is_density(q) || !is_finite(sum)) return false;
+  if (f == 0 && !(sum > 0)) {
+    u = w = 0;
+    for (int k = 0; k < m; ++k) y[k] = 0;
     return true;
   }
-  if (!(sum > 0) || !(sample.q > 0)) return false;
-  out.u = (sample.f < 0 ? -sample.f : sample.f) / sum;
-  out.w = sum / sample.q;
-  for (int k = 0; k < M; ++k) out.y[k] = sample.pdfs[k] / sum;
-  return is_finite(out.u) && is_finite(out.w);
+  if (!(sum > 0) || !(q > 0)) return false;
+  u = (f < 0 ? -f : f) / sum;
+  w = sum / q;
+  for (int k = 0; k < m; ++k) y[k] = pdfs[k] / sum;
+  return is_finite(u) && is_finite(w);
+}
+template <class Real, int M>
+PHIMIS_HOST_DEVICE bool to_row(const observation<Real, M>& sample, row<Real, M>& out) noexcept {
+  return to_row(sample.f, sample.pdfs.value, M, sample.q, out.u, out.w, out.y);
 }
 
 }  // namespace phimis

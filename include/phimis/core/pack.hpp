@@ -44,6 +44,11 @@ PHIMIS_HOST_DEVICE V load(const Real* p) noexcept {
   return v;
 }
 
+template <class V, class Real>
+PHIMIS_HOST_DEVICE void store(Real* p, const V& v) noexcept {
+  std::memcpy(p, &v, sizeof v);
+}
+
 template <class Real, class V>
 PHIMIS_HOST_DEVICE double sum_of_lanes(const V& v) noexcept {
   if constexpr (std::is_same<V, Real>::value) {

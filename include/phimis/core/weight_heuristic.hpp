@@ -95,6 +95,28 @@ struct maximum {
   }
 };
 
+/// Weights that do not depend on the counts: a heuristic evaluated at equal fractions, whatever the fractions are.
+///
+///     w_i(x) = p_i(x) / Σ_k p_k(x)                        (balance)
+///     F = Σ_i (1/n_i) Σ_j f(X_ij) / Σ_k p_k(X_ij)
+///     V[F] = Σ_i σ_i² / n_i                               with σ_i² free of the counts
+///
+/// so that n_i ∝ σ_i, or σ_i/√c_i with costs, is optimal: `sigma_proportional`. At equal counts it is the heuristic itself.
+///
+/// Source   V Eqs. 25–29; the inner heuristic may be any, V after Eq. 30.   (V: Sbert, Havran & Szirmay-Kalos 2016)
+/// Requires every technique is sampled that has a weight: with n_i = 0 its part of f is lost, and the estimate is biased.
+/// Shapes and errors as the inner heuristic.
+template <class Heuristic = balance>
+struct count_independent {
+  Heuristic inner{};
+  template <class Real, int M>
+  PHIMIS_HOST_DEVICE Real operator()(int i, const fractions<Real, M>&, const per_technique<Real, M>& pdfs) const {
+    return inner(i, equal_fractions<Real, M>(), pdfs);
+  }
+};
+template <class Heuristic>
+count_independent(Heuristic) -> count_independent<Heuristic>;
+
 }  // namespace phimis
 
 #endif  // PHIMIS_CORE_WEIGHT_HEURISTIC_HPP

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+#ifndef PHIMIS_CORE_MIXTURE_SUMS_HPP
+#define PHIMIS_CORE_MIXTURE_SUMS_HPP
+
+#include <phimis/core/config.hpp>
+#include <phimis/core/divergence.hpp>
+#include <phimis/core/pack.hpp>
+#include <phimis/core/power_terms.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+
+namespace phimis {
+
+/// Rows by column, for a number of techniques that is known when it runs. Shapes u[n], w[n], y[m][n].
+template <class Real>
+struct column_pointers {
+  const Real* u;
+  const Real* w;
+  const Real* const* y;
+  std::ptrdiff_t n;
+  int m;
+};
+
+namespace detail {
+
+inline constexpr int block_rows = 64;
+
+/// Scores of a block of rows: a = w s(t), b = w t s'(t)/x, and their part of λ = Σ w x |s|.
+template <class Real>
+struct score_block {
+  Real a[block_rows];
+  Real b[block_rows];
+};
+
+/// In the power family: one division a row.
+template <class Power>
+struct power_block {
+  static constexpr bool packed = Power::packed;
+  Power power;
+  double exponent;
+
+  template <class V, class Real>
+  PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b) const noexcept {
+    const V r = Real(1) / x;
+    const V v = power.template term<Real>(w, u, x, r);
+    const V vr = v * r;
+    a = exponent < 0 ? -vr : vr;
+    b = Real(std::fabs(exponent)) * vr * r;
+    return v;
+  }
+};
+
+/// Any score; its slope is part of λ, so that a score that crosses zero has a scale.
+template <class Divergence>
+struct any_block {
+  static constexpr bool packed = false;
+  const Divergence& divergence;
+  double zero;  // s(0), or 0 where constants cancel
+
+  template <class V, class Real>
+  PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b) const noexcept {
+    const phimis::score<Real> s = score_at(divergence, u / x);
+    const Real value = s.value - static_cast<Real>(zero);
+    a = w * value;
+    b = w * s.slope / x;
+    return w * x * ((value < 0 ? -value : value) + s.slope);
+  }
+};
+
+/// Sums over rows at a mixture x_j = Σ β_k y_kj, block by block: each block's scores stay in cache while all techniques
+/// read them.
+template <class Real, class Scores>
+class mixture_block_sums {
+ public:
+  PHIMIS_HOST_DEVICE mixture_block_sums(const column_pointers<Real>& rows, const double* beta, double unit,
+                                        const Scores& scores) noexcept
+      : rows_(rows), beta_(beta), unit_(static_cast<Real>(unit)), scores_(scores) {}
+
+  /// λ, and G_k = Σ_j w_j y_kj s(t_j)
+  PHIMIS_HOST_DEVICE double gradient(double* gradient) const noexcept {
+    for (int k = 0; k < rows_.m; ++k) gradient[k] = 0;
+    double lambda = 0;
+    for_blocks([&](auto lane, std::ptrdiff_t first, int count) {
+      using V = decltype(lane);
+      score_block<Real> block;
+      lambda += fill<V>(first, count, block);
+      for (int k = 0; k < rows_.m; ++k) gradient[k] += dot<V>(rows_.y[k] + first, block.a, count);
+    });
+    return lambda;
+  }
+
+  /// H_kl = Σ_j w_j y_kj y_lj t_j s'(t_j)/x_j over a support; the last coordinate is Σ fixed_k y_k where `fixed` is given.
+  PHIMIS_HOST_DEVICE void hessian(const int* support, int size, const double* fixed, double* hessian) const noexcept {
+    const int order = size + (fixed != nullptr ? 1 : 0);
+    for (int i = 0; i < order * order; ++i) hessian[i] = 0;
+    for_blocks([&](auto lane, std::ptrdiff_t first, int count) {
+      using V = decltype(lane);
+      score_block<Real> block;
+      fill<V>(first, count, block);
+      Real base[block_rows];
+      if (fixed != nullptr) mix<V>(fixed, Real(0), first, count, base);
+      const auto column = [&](int a) { return a < size ? rows_.y[support[a]] + first : base; };
+      for (int a = 0; a < order; a += 2) {
+        const int a1 = a + 1 < order ? a + 1 : a;
+        Real scaled[2][block_rows];
+        multiply<V>(column(a), block.b, count, scaled[0]);
+        multiply<V>(column(a1), block.b, count, scaled[1]);
+        for (int b = a; b < order; b += 4) {
+          const Real* const y[4] = {column(b), column(b + 1 < order ? b + 1 : b), column(b + 2 < order ? b + 2 : b),
+                                    column(b + 3 < order ? b + 3 : b)};
+          double sums[8];
+          products<V>(scaled[0], scaled[1], y, count, sums);
+          for (int i = 0; i < 4 && b + i < order; ++i) {
+            hessian[a * order + b + i] += sums[i];
+            if (a1 > a) hessian[a1 * order + b + i] += sums[4 + i];
+          }
+        }
+      }
+    });
+    for (int a = 0; a < order; ++a) {
+      for (int b = 0; b < a; ++b) hessian[a * order + b] = hessian[b * order + a];
+    }
+  }
+
+  /// The t of the largest |s| among rows with u > 0; 0 without any.
+  PHIMIS_HOST_DEVICE double reference(bool largest) const noexcept {
+    double found = 0;
+    for (std::ptrdiff_t j = 0; j < rows_.n; ++j) {
+      if (!(rows_.u[j] > 0)) continue;
+      Real x[1];
+      mix<Real>(beta_, tiny, j, 1, x);
+      const double t = static_cast<double>(unit_ * rows_.u[j] / x[0]);
+      if (!(found > 0) || (largest ? t > found : t < found)) found = t;
+    }
+    return found;
+  }
+
+ private:
+  static constexpr Real tiny = sizeof(Real) == 8 ? Real(1e-300) : Real(1e-37);
+
+  template <class Body>
+  PHIMIS_HOST_DEVICE void for_blocks(const Body& body) const noexcept {
+    using V = pack<Real>;
+    constexpr std::ptrdiff_t width = pack_width<Real>;
+    std::ptrdiff_t j = 0;
+    while (rows_.n - j >= width) {
+      const std::ptrdiff_t rest = rows_.n - j;
+      const std::ptrdiff_t count = rest < block_rows ? rest / width * width : block_rows;
+      body(V{}, j, static_cast<int>(count));
+      j += count;
+    }
+    if (j < rows_.n) body(Real{}, j, static_cast<int>(rows_.n - j));
+  }
+
+  /// Σ weight_k y_k + least
+  template <class V>
+  PHIMIS_HOST_DEVICE void mix(const double* weights, Real least, std::ptrdiff_t first, int count,
+                              Real* x) const noexcept {
+    constexpr int width = static_cast<int>(sizeof(V) / sizeof(Real));
+    for (int i = 0; i < count; i += width) store<V>(x + i, V{} + least);
+    for (int k = 0; k < rows_.m; ++k) {
+      if (weights[k] == 0) continue;
+      const Real weight = static_cast<Real>(weights[k]);
+      const Real* const y = rows_.y[k] + first;
+      for (int i = 0; i < count; i += width) store<V>(x + i, load<V>(x + i) + weight * load<V>(y + i));
+    }
+  }
+
+  /// The scores of a block, and its part of λ.
+  template <class V>
+  PHIMIS_HOST_DEVICE double fill(std::ptrdiff_t first, int count, score_block<Real>& block) const noexcept {
+    using W = std::conditional_t<Scores::packed, V, Real>;
+    constexpr int width = static_cast<int>(sizeof(W) / sizeof(Real));
+    Real x[block_rows];
+    mix<V>(beta_, tiny, first, count, x);
+    W lambda{};
+    for (int i = 0; i < count; i += width) {
+      W a;
+      W b;
+      lambda += scores_.template score<W, Real>(load<W>(rows_.w + first + i), unit_ * load<W>(rows_.u + first + i),
+                                                load<W>(x + i), a, b);
+      store<W>(block.a + i, a);
+      store<W>(block.b + i, b);
+    }
+    return sum_of_lanes<Real>(lambda);
+  }
+
+  template <class V>
+  PHIMIS_HOST_DEVICE static double dot(const Real* y, const Real* a, int count) noexcept {
+    constexpr int width = static_cast<int>(sizeof(V) / sizeof(Real));
+    V sum{};
+    for (int i = 0; i < count; i += width) sum += load<V>(y + i) * load<V>(a + i);
+    return sum_of_lanes<Real>(sum);
+  }
+
+  template <class V>
+  PHIMIS_HOST_DEVICE static void multiply(const Real* y, const Real* b, int count, Real* out) noexcept {
+    constexpr int width = static_cast<int>(sizeof(V) / sizeof(Real));
+    for (int i = 0; i < count; i += width) store<V>(out + i, load<V>(y + i) * load<V>(b + i));
+  }
+
+  /// The dot products of two columns with four.
+  template <class V>
+  PHIMIS_HOST_DEVICE static void products(const Real* z0, const Real* z1, const Real* const (&y)[4], int count,
+                                          double (&out)[8]) noexcept {
+    constexpr int width = static_cast<int>(sizeof(V) / sizeof(Real));
+    V s0{}, s1{}, s2{}, s3{}, s4{}, s5{}, s6{}, s7{};
+    for (int i = 0; i < count; i += width) {
+      const V a = load<V>(z0 + i);
+      const V b = load<V>(z1 + i);
+      const V y0 = load<V>(y[0] + i);
+      const V y1 = load<V>(y[1] + i);
+      const V y2 = load<V>(y[2] + i);
+      const V y3 = load<V>(y[3] + i);
+      s0 += a * y0;
+      s1 += a * y1;
+      s2 += a * y2;
+      s3 += a * y3;
+      s4 += b * y0;
+      s5 += b * y1;
+      s6 += b * y2;
+      s7 += b * y3;
+    }
+    out[0] = sum_of_lanes<Real>(s0);
+    out[1] = sum_of_lanes<Real>(s1);
+    out[2] = sum_of_lanes<Real>(s2);
+    out[3] = sum_of_lanes<Real>(s3);
+    out[4] = sum_of_lanes<Real>(s4);
+    out[5] = sum_of_lanes<Real>(s5);
+    out[6] = sum_of_lanes<Real>(s6);
+    out[7] = sum_of_lanes<Real>(s7);
+  }
+
+  const column_pointers<Real>& rows_;
+  const double* beta_;
+  Real unit_;
+  const Scores& scores_;
+};
+
+template <class Real>
+struct product_terms {
+  static constexpr bool packed = true;
+  const Real* w;
+  const Real* y;
+  Real factor;
+
+  template <class V>
+  PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[1]) const noexcept {
+    sums[0] += load<V>(w + j) * (load<V>(y + j) * factor);
+  }
+};
+
+/// Σ_j w_j y_kj of every technique, and returns Σ_j w_j u_j unit.
+template <class Real>
+PHIMIS_HOST_DEVICE double masses(const column_pointers<Real>& rows, Real unit, double* mass) noexcept {
+  const auto product = [&](const Real* y, Real factor) {
+    double total[1] = {};
+    sum_rows<1, Real>(rows.n, product_terms<Real>{rows.w, y, factor}, total);
+    return total[0];
+  };
+  for (int k = 0; k < rows.m; ++k) mass[k] = product(rows.y[k], Real(1));
+  return product(rows.u, unit);
+}
+
+}  // namespace detail
+
+/// Hands the sums of a divergence at a mixture to `use`: γ = ½, 1, 2 run without a power function.
+template <class Divergence, class Real, class Use>
+PHIMIS_HOST_DEVICE void with_mixture_sums(const Divergence& divergence, const column_pointers<Real>& rows,
+                                          const double* beta, double unit, bool normalised, const Use& use) noexcept {
+  const auto run = [&](const auto& scores) {
+    using Scores = std::decay_t<decltype(scores)>;
+    use(detail::mixture_block_sums<Real, Scores>(rows, beta, unit, scores));
+  };
+  if constexpr (has_exponent<Divergence>::value) {
+    const double exponent = divergence.exponent();
+    if (exponent == 0.5) return run(detail::power_block<detail::power_half>{{}, exponent});
+    if (exponent == 1) return run(detail::power_block<detail::power_one>{{}, exponent});
+    if (exponent == 2) return run(detail::power_block<detail::power_two>{{}, exponent});
+    if (exponent != 0) return run(detail::power_block<detail::power_any>{{exponent}, exponent});
+  }
+  run(detail::any_block<Divergence>{divergence, normalised ? 0 : score_at_zero(divergence)});
+}
+
+}  // namespace phimis
+
+#endif  // PHIMIS_CORE_MIXTURE_SUMS_HPP
