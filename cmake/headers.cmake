@@ -30,6 +30,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/technique_moments.hpp
     phimis/core/uniform.hpp
     phimis/core/value.hpp
+    phimis/core/variance_on_simplex.hpp
     phimis/core/version.hpp
     phimis/core/weight_heuristic.hpp)
 

@@ -9,6 +9,7 @@
 #include <phimis/core/rule.hpp>
 #include <phimis/core/simplex_newton.hpp>
 #include <phimis/core/simplex_problem.hpp>
+#include <phimis/core/variance_on_simplex.hpp>
 
 #include <type_traits>
 
@@ -41,19 +42,15 @@ struct minimisation {
   const Real* costs;
   const bool* frozen;
   Real prior = 0;
+  double mass = 0;  ///< what sums are divided by to be means; 0: the number of rows
   control_variate variate = control_variate::on;
   silent_technique silent = silent_technique::judged;
 };
 
-PHIMIS_HOST_DEVICE constexpr int minimise_doubles(int m) noexcept {
-  return 2 * m + floored_simplex::doubles(m) + 3 * m + (m + 1) * (m + 1) + simplex_doubles(m);
-}
-PHIMIS_HOST_DEVICE constexpr int minimise_indices(int m) noexcept { return 3 * m + simplex_indices(m); }
-
-/// A minimum, and how good it is; ν of `simplex_solution` is in the unit of the objective that was chosen.
+/// A minimum, and how good it is.
 struct row_minimum {
-  rule_status status;
-  simplex_solution solution;
+  rule_status status = rule_status::no_information;
+  simplex_solution solution{};
 };
 
 namespace detail {
@@ -61,69 +58,190 @@ namespace detail {
 /// Whether a divergence depends on the unit of f.
 template <class Divergence>
 PHIMIS_HOST_DEVICE bool needs_mean(const Divergence& divergence) noexcept {
-  if constexpr (std::is_same<Divergence, multi_sample_variance>::value) {
-    return false;
-  } else if constexpr (has_exponent<Divergence>::value) {
+  if constexpr (has_exponent<Divergence>::value) {
     return divergence.exponent() == 0;
   } else {
-    return true;
+    return !std::is_same<Divergence, multi_sample_variance>::value;
   }
 }
+
+/// The variances, which f and |f| do not share and which cost times variance is about.
+template <class Divergence>
+struct is_variance : std::is_base_of<one_sample_variance, Divergence> {};
+template <>
+struct is_variance<multi_sample_variance> : std::true_type {};
 
 }  // namespace detail
 
+/// Memory of `minimise_rows` for m techniques: what a caller without a heap puts on its stack.
+template <class Divergence>
+PHIMIS_HOST_DEVICE constexpr int minimise_doubles(int m) noexcept {
+  return 3 * m + floored_simplex::doubles(m) + divergence_on_simplex<chi_squared, double>::doubles(m) +
+         (detail::is_variance<Divergence>::value ? variance_on_simplex<double>::doubles(m) : 0) + simplex_doubles(m);
+}
+PHIMIS_HOST_DEVICE constexpr int minimise_indices(int m) noexcept { return 3 * m + simplex_indices(m); }
+
 /// The fractions that minimise a divergence on rows, written to alpha[m].
 ///
-/// Requires largest = max |u| > 0.   Errors the status: no_information where fewer than two techniques can move.
+///     min_α Σ_j (p_j/q_j) φ(g_j/p_j) + prior · D(π, α),   α_k ≥ floor_k,   Σ α_k = 1
+///
+/// With costs, p is replaced by p/C, the density per unit of cost C = Σ c_k α_k: for χ² that is C ∫ f²/p. Only positive
+/// powers allow it. The variances mean cost times variance instead: C V[ℱ], or C V[F] of which a local minimum is found.
+/// Rows of these two have the sign of f in u.
+///
+/// Requires largest = max |u| > 0; memory[minimise_doubles<Divergence>(m)], indices[minimise_indices(m)].
+/// Errors   the status: no_information where fewer than two techniques can move, and alpha is not written.
 template <class Divergence, class Real>
-PHIMIS_HOST_DEVICE row_minimum minimise_rows(const Divergence& divergence, const column_pointers<Real>& rows, Real largest,
-                                             const minimisation<Real>& wanted, Real* alpha, double* memory,
-                                             int* indices) noexcept {
-  const int m = rows.m;
-  double* const kappa = memory;
-  double* const theta = kappa + m;
-  double* const simplex_memory = theta + m;
-  double* const problem_memory = simplex_memory + floored_simplex::doubles(m);
-  double* const solver_memory = problem_memory + divergence_on_simplex<Divergence, Real>::doubles(m);
-
-  constexpr Real smallest = 4 * smallest_normal<Real>;
-  const Real inverse = 1 / (largest > smallest ? largest : smallest);
-  const double n = static_cast<double>(rows.n);
-  const double mean = detail::masses(rows, inverse, kappa) / n;
-
-  int* const silent = indices;
-  for (int k = 0; k < m; ++k) {
-    silent[k] = wanted.silent == silent_technique::kept && !(kappa[k] > 0) ? 1 : 0;
-    const bool normalise = wanted.variate == control_variate::on && kappa[k] > 0;
-    kappa[k] = (normalise ? n / kappa[k] : 1) / static_cast<double>(wanted.costs[k]);
+class row_minimisation {
+ public:
+  PHIMIS_HOST_DEVICE row_minimisation(const Divergence& divergence, const column_pointers<Real>& rows, Real largest,
+                                      const minimisation<Real>& wanted, double* memory, int* indices) noexcept
+      : divergence_(divergence),
+        rows_(rows),
+        wanted_(wanted),
+        kappa_(memory),
+        theta_(kappa_ + rows.m),
+        best_(theta_ + rows.m),
+        convex_memory_(best_ + rows.m + floored_simplex::doubles(rows.m)),
+        solver_memory_(convex_memory_ + divergence_on_simplex<chi_squared, double>::doubles(rows.m)),
+        variance_memory_(solver_memory_ + simplex_doubles(rows.m)),
+        silent_(indices),
+        problem_indices_(indices + 2 * rows.m),
+        solver_indices_(indices + 3 * rows.m),
+        simplex_(rows.m, kappa_, best_ + rows.m, indices + rows.m) {
+    constexpr Real smallest = 4 * smallest_normal<Real>;
+    const Real inverse = 1 / (largest > smallest ? largest : smallest);
+    unit_ = static_cast<double>(inverse);
+    mean_ = detail::masses(rows, inverse, kappa_) / static_cast<double>(rows.n);
+    constrain();
   }
-  floored_simplex simplex(m, kappa, simplex_memory, indices + m);
-  simplex.constrain([&](int k) { return wanted.frozen[k] || silent[k] != 0; },
-                    [&](int k) {
-                      return wanted.frozen[k] ? wanted.start[k] : silent[k] != 0 ? wanted.from[k] : wanted.floors[k];
-                    });
-  if (!simplex.has_freedom()) return {rule_status::no_information, {}};
 
-  // Only powers of t are free of the unit of f; the others want t = g/p, g = f/μ̂.
-  const bool in_means = detail::needs_mean(divergence);
-  divergence_on_simplex<Divergence, Real> problem(
-      divergence, rows, simplex, kappa, wanted.variate == control_variate::on,
-      static_cast<double>(inverse) / (in_means ? mean : 1), in_means ? 1 : mean, static_cast<double>(wanted.prior),
-      problem_memory, indices + 2 * m);
-  double sum = 0;
-  for (int k = 0; k < m; ++k) sum += static_cast<double>(wanted.start[k]) / kappa[k];
-  for (int k = 0; k < m; ++k) problem.prior_shares()[k] = static_cast<double>(wanted.start[k]) / kappa[k] / sum;
+  PHIMIS_HOST_DEVICE row_minimum minimise(Real* alpha) noexcept {
+    if (!simplex_.has_freedom()) return {};
+    simplex_.to_theta(wanted_.from, theta_);
+    simplex_solution found;
+    bool local = false;
+    if constexpr (std::is_same<Divergence, multi_sample_variance>::value) {
+      if (priced()) scan_prices(sampling_model::multi_sample);
+      found = solve_variance(sampling_model::multi_sample);
+      local = true;
+    } else if constexpr (detail::is_variance<Divergence>::value) {
+      if (priced()) scan_prices(sampling_model::one_sample);
+      found = priced() ? solve_variance(sampling_model::one_sample) : solve_convex();
+    } else {
+      found = solve_convex();
+    }
+    for (int k = 0; k < rows_.m; ++k) alpha[k] = wanted_.frozen[k] ? wanted_.start[k] : wanted_.from[k];
+    simplex_.to_fractions(theta_, alpha);
+    if (found.residual > 1e5 * rounding) return {rule_status::not_converged, found};
+    return {local ? rule_status::local : rule_status::updated, found};
+  }
 
-  simplex.to_theta(wanted.from, theta);
-  problem.choose_unit(theta);
-  simplex_newton<divergence_on_simplex<Divergence, Real>> solver(problem, simplex.size(), solver_memory,
-                                                                 indices + 3 * m);
-  constexpr double rounding = static_cast<double>(epsilon<Real>);
-  const simplex_solution solution = solver.minimise(theta, 4 * rounding);
-  for (int k = 0; k < m; ++k) alpha[k] = wanted.frozen[k] ? wanted.start[k] : wanted.from[k];
-  simplex.to_fractions(theta, alpha);
-  return {solution.residual <= 1e5 * rounding ? rule_status::updated : rule_status::not_converged, solution};
-}
+ private:
+  static constexpr double rounding = static_cast<double>(epsilon<Real>);
+
+  PHIMIS_HOST_DEVICE bool priced() const noexcept {
+    for (int k = 1; k < rows_.m; ++k) {
+      if (wanted_.costs[k] != wanted_.costs[0]) return true;
+    }
+    return false;
+  }
+
+  /// From masses to κ, and the floors.
+  PHIMIS_HOST_DEVICE void constrain() noexcept {
+    const double n = static_cast<double>(rows_.n);
+    for (int k = 0; k < rows_.m; ++k) {
+      silent_[k] = wanted_.silent == silent_technique::kept && !(kappa_[k] > 0) ? 1 : 0;
+      kappa_[k] = wanted_.variate == control_variate::on && kappa_[k] > 0 ? n / kappa_[k] : 1;
+      if (!detail::is_variance<Divergence>::value) kappa_[k] /= static_cast<double>(wanted_.costs[k]);
+    }
+    simplex_.constrain([&](int k) { return wanted_.frozen[k] || silent_[k] != 0; },
+                       [&](int k) {
+                         if (wanted_.frozen[k]) return wanted_.start[k];
+                         return silent_[k] != 0 ? wanted_.from[k] : wanted_.floors[k];
+                       });
+  }
+
+  template <class Objective>
+  PHIMIS_HOST_DEVICE divergence_on_simplex<Objective, Real> convex_problem(const Objective& objective) noexcept {
+    // Only powers of t are free of the unit of f; the others want t = g/p, g = f/μ̂.
+    const bool in_means = detail::needs_mean(objective);
+    divergence_on_simplex<Objective, Real> problem(
+        objective, rows_, simplex_, kappa_, wanted_.variate == control_variate::on, unit_ / (in_means ? mean_ : 1),
+        in_means ? 1 : mean_, static_cast<double>(wanted_.prior), convex_memory_, problem_indices_);
+    double sum = 0;
+    for (int k = 0; k < rows_.m; ++k) sum += static_cast<double>(wanted_.start[k]) / kappa_[k];
+    for (int k = 0; k < rows_.m; ++k) {
+      problem.prior_shares()[k] = static_cast<double>(wanted_.start[k]) / kappa_[k] / sum;
+    }
+    return problem;
+  }
+
+  template <class Problem>
+  PHIMIS_HOST_DEVICE simplex_solution solve(Problem& problem) noexcept {
+    simplex_newton<Problem> solver(problem, simplex_.size(), solver_memory_, solver_indices_);
+    return solver.minimise(theta_, 4 * rounding);
+  }
+
+  PHIMIS_HOST_DEVICE simplex_solution solve_convex() noexcept {
+    auto problem = convex_problem(divergence_);
+    problem.choose_unit(theta_);
+    return solve(problem);
+  }
+
+  PHIMIS_HOST_DEVICE variance_on_simplex<Real> variance_problem(sampling_model model) noexcept {
+    return variance_on_simplex<Real>(model, rows_, simplex_, kappa_, priced() ? wanted_.costs : nullptr, unit_,
+                                     wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n), variance_memory_);
+  }
+
+  PHIMIS_HOST_DEVICE simplex_solution solve_variance(sampling_model model) noexcept {
+    auto problem = variance_problem(model);
+    return solve(problem);
+  }
+
+  /// θ near the global minimum of C V: C V = min_τ (τ C + V/τ)²/4, and τ² C + V is convex in the one-sample model. τ² is
+  /// V/C at the minimum: it is looked for over the decades that V and C span, then followed downhill.
+  PHIMIS_HOST_DEVICE void scan_prices(sampling_model model) noexcept {
+    auto objective = variance_problem(model);
+    auto convex = convex_problem(chi_squared{});
+    const double mass = wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n);
+    double least = infinity<double>;
+    const auto look = [&](double price) {
+      convex.charge(price * mass, wanted_.costs);
+      solve(convex);
+      (void)objective.gradient(theta_, convex_memory_ + rows_.m);  // its raw gradient is the convex problem's scratch
+      if (!(objective.value() < least)) return false;
+      least = objective.value();
+      for (int i = 0; i < simplex_.size(); ++i) best_[i] = theta_[i];
+      return true;
+    };
+    look(0);
+    const double scale = objective.second_moment() / objective.cost();
+    for (double price = 64 * scale; price > 1e-6 * scale; price /= 4) look(price);
+    for (int step = 0; step < 20; ++step) {
+      for (int i = 0; i < simplex_.size(); ++i) theta_[i] = best_[i];
+      (void)objective.gradient(theta_, convex_memory_ + rows_.m);
+      if (!look(objective.variance() / objective.cost())) break;
+    }
+    for (int i = 0; i < simplex_.size(); ++i) theta_[i] = best_[i];
+  }
+
+  const Divergence& divergence_;
+  const column_pointers<Real>& rows_;
+  const minimisation<Real>& wanted_;
+  double* kappa_;
+  double* theta_;
+  double* best_;
+  double* convex_memory_;
+  double* solver_memory_;
+  double* variance_memory_;
+  int* silent_;
+  int* problem_indices_;
+  int* solver_indices_;
+  floored_simplex simplex_;
+  double unit_;
+  double mean_;
+};
 
 }  // namespace phimis
 

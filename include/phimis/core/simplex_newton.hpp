@@ -133,7 +133,11 @@ class simplex_newton {
       scale_[a] = diagonal > 0 && is_finite(1 / diagonal) ? 1 / std::sqrt(diagonal) : 0;
     }
     for (int k = 0; k < m_; ++k) step_[k] = 0;
-    return quadratic_step(theta) && search(theta, now);
+    // A model that is nearly flat may fail to descend; the less it is trusted, the surer it does.
+    for (least_delta_ = 1e-12; least_delta_ < 1e3; least_delta_ *= 1e3) {
+      if (quadratic_step(theta) && search(theta, now)) return true;
+    }
+    return false;
   }
 
   /// The step to the minimum of the quadratic model on the simplex: step_. False where it does not descend.
@@ -219,10 +223,10 @@ class simplex_newton {
       rhs_[i] = value * scale_[a];
       ones_[i] = scale_[a];
     }
-    double delta = 1e-12;
+    double delta = least_delta_;
     while (!factorise(count, delta)) {
-      delta *= 100;
-      if (delta > 1e6) return false;
+      delta *= delta < 1e-3 ? 1000 : 3;  // rounding needs little, a model that is not convex some
+      if (delta > 1e30) return false;
     }
     solve(count, rhs_);
     solve(count, ones_);
@@ -355,6 +359,7 @@ class simplex_newton {
   int* support_;
   int* free_;  // positions in the support
   int size_ = 0;
+  double least_delta_ = 0;
   double nu_ = 0;
 };
 

@@ -120,9 +120,9 @@ class floored_simplex {
 
 /// What a divergence asks for on rows, with a prior: the problem that `simplex_newton` solves.
 ///
-///     min Σ_j w_j x_j φ(unit u_j/x_j) + prior · Σ_k a_k φ(mean π_k/a_k),   a_k = β_k/κ_k
+///     min Σ_j w_j x_j φ(unit u_j/x_j) + prior · Σ_k a_k φ(mean π_k/a_k) + price · Σ_k c_k a_k,   a_k = β_k/κ_k
 ///
-/// Shapes   kappa[m]; prior shares π[m], on the simplex, in the coordinates a.
+/// Shapes   kappa[m]; prior shares π[m], on the simplex, in the coordinates a; costs[m].
 template <class Divergence, class Real>
 class divergence_on_simplex {
  public:
@@ -148,7 +148,14 @@ class divergence_on_simplex {
   /// π[m], to be written before the first gradient where prior > 0.
   PHIMIS_HOST_DEVICE double* prior_shares() noexcept { return shares_; }
 
+  /// Adds price · Σ_k c_k a_k to the objective.
+  PHIMIS_HOST_DEVICE void charge(double price, const Real* costs) noexcept {
+    price_ = price;
+    costs_ = costs;
+  }
+
   PHIMIS_HOST_DEVICE double power() const noexcept {
+    if (price_ > 0) return 0;
     if constexpr (has_exponent<Divergence>::value) {
       return divergence_.exponent();
     } else {
@@ -168,6 +175,7 @@ class divergence_on_simplex {
       raw_[k] += prior_ * s.value / kappa_[k];
       lambda += prior_ * a * std::fabs(s.value);
     }
+    for (int k = 0; k < rows_.m && price_ > 0; ++k) raw_[k] -= price_ * static_cast<double>(costs_[k]) / kappa_[k];
     on_.pull_back(raw_, gradient);
     return lambda;
   }
@@ -227,6 +235,8 @@ class divergence_on_simplex {
   double unit_;
   double mean_;
   double prior_;
+  double price_ = 0;
+  const Real* costs_ = nullptr;
   double* shares_;
   double* raw_;
   double* hessian_;

@@ -106,7 +106,9 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
     }
     y.row(kept) = row;
     largest = std::max(largest, u[kept]);
-    if (!(u[kept++] > 0)) ++result.counters.zero;
+    if (!(u[kept] > 0)) ++result.counters.zero;
+    if (detail::is_variance<Divergence>::value && f[j] < 0) u[kept] = -u[kept];
+    ++kept;
   }
   if (result.counters.zero > 0 && infinite_at_zero(divergence)) {
     result.status = rule_status::infinite_divergence;
@@ -116,7 +118,7 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
 
   std::vector<const double*> columns;
   for (Eigen::Index k = 0; k < m; ++k) columns.push_back(y.data() + k * n);
-  std::vector<double> memory(static_cast<std::size_t>(minimise_doubles(static_cast<int>(m))));
+  std::vector<double> memory(static_cast<std::size_t>(minimise_doubles<Divergence>(static_cast<int>(m))));
   std::vector<int> indices(static_cast<std::size_t>(minimise_indices(static_cast<int>(m))));
   const column_pointers<double> rows{u.data(), w.data(), columns.data(), kept, static_cast<int>(m)};
   const minimisation<double> wanted{.start = start.data(),
@@ -126,8 +128,9 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
                                     .frozen = frozen.get(),
                                     .prior = options.prior,
                                     .variate = options.variate};
-  const row_minimum found =
-      minimise_rows(divergence, rows, largest, wanted, result.fractions.data(), memory.data(), indices.data());
+  const row_minimum found = row_minimisation<Divergence, double>(divergence, rows, largest, wanted, memory.data(),
+                                                                 indices.data())
+                                .minimise(result.fractions.data());
   result.status = found.status;
   result.iterations = found.solution.iterations;
   result.evaluations = found.solution.evaluations;
