@@ -12,6 +12,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/fractions.hpp
     phimis/core/inverse_variance_fractions.hpp
     phimis/core/limits.hpp
+    phimis/core/minimise_pair.hpp
     phimis/core/minimise_rows.hpp
     phimis/core/mixture_sums.hpp
     phimis/core/moments.hpp

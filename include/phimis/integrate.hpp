@@ -200,7 +200,7 @@ combined<Value> combine(const Combination& combination, const std::vector<iterat
 ///
 /// Policies follow in any order, each by value and each with a default:
 ///
-///     rule              exact_rule(chi_squared{}, {.prior = 1}); fixed_rule<M>() where there are not two techniques
+///     rule              exact_rule<M>(chi_squared{}, {.prior = 1})
 ///     weight heuristic  balance{}
 ///     combination       by_count{}
 ///     uniform numbers   std::mt19937_64 of options.seed; any callable that returns the next one, taken by reference
@@ -229,8 +229,8 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
           options.budget);
 
   auto default_rule = [] {
-    if constexpr (M == 2) {
-      return exact_rule(chi_squared{}, {.prior = 1});
+    if constexpr (M >= 2) {
+      return exact_rule<M>(chi_squared{}, {.prior = 1});
     } else {
       return fixed_rule<M>();
     }

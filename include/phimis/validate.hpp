@@ -74,6 +74,16 @@ void validate(const rule_options<Real, M>& options) {
   validate<Real>(options.start.value, options.floors.value, options.costs.value, options.prior);
 }
 
+/// Options of a rule that knows nothing of costs and moves all techniques.
+template <class Real, int M>
+void validate_plain(const rule_options<Real, M>& options) {
+  for (int k = 0; k < M; ++k) {
+    require(options.costs[k] == options.costs[0], "costs", "must be equal for a rule that knows nothing of costs",
+            options.costs[k]);
+    require(!options.frozen[k], "frozen", "must be empty for a rule that moves all techniques; it has technique", k);
+  }
+}
+
 /// Costs that are not all the same need an objective that a cost multiplies: a positive power of f/p, or a variance.
 template <class Divergence, class Real>
 void validate_costs(const Divergence& divergence, std::span<const Real> costs) {

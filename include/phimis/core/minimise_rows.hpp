@@ -36,8 +36,8 @@ enum class silent_technique {
 /// Shapes start[m], from[m], floors[m], costs[m], frozen[m].
 template <class Real>
 struct minimisation {
-  const Real* start;   ///< of the prior, and of frozen techniques
-  const Real* from;    ///< where the search starts
+  const Real* start;  ///< of the prior, and of frozen techniques
+  const Real* from;   ///< where the search starts
   const Real* floors;
   const Real* costs;
   const bool* frozen;
@@ -191,7 +191,8 @@ class row_minimisation {
 
   PHIMIS_HOST_DEVICE variance_on_simplex<Real> variance_problem(sampling_model model) noexcept {
     return variance_on_simplex<Real>(model, rows_, simplex_, kappa_, priced() ? wanted_.costs : nullptr, unit_,
-                                     wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n), variance_memory_);
+                                     wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n),
+                                     variance_memory_);
   }
 
   PHIMIS_HOST_DEVICE simplex_solution solve_variance(sampling_model model) noexcept {

@@ -14,9 +14,9 @@ namespace phimis {
 ///
 ///     G_k = ν where θ_k > 0,   G_k ≤ ν where θ_k = 0,   ν = Σ θ_k G_k
 struct simplex_solution {
-  double lambda = 0;                     ///< the scale of G
-  double residual = infinity<double>;    ///< the largest violation on all coordinates, over λ
-  double gap = infinity<double>;         ///< max_k G_k − ν, over λ: a convex objective is within gap · λ of its minimum
+  double lambda = 0;                   ///< the scale of G
+  double residual = infinity<double>;  ///< the largest violation on all coordinates, over λ
+  double gap = infinity<double>;  ///< max_k G_k − ν, over λ: a convex objective is within gap · λ of its minimum
   int iterations = 0;
   int evaluations = 0;
 };

@@ -23,6 +23,7 @@ struct pair_solution {
   double residual;  ///< |ζ|/λ in the interior; 0 at an end that ζ points out of
   bool bracketed;   ///< ζ changes sign within the last digit of alpha
   int evaluations;
+  double lambda;  ///< at alpha
 };
 
 namespace detail {
@@ -83,7 +84,7 @@ PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fract
   double last_step = 2;
   pair_fractions alpha = start;
   double least = -1;  // |ζ| of the best
-  pair_solution best{start, 0, false, 0};
+  pair_solution best{start, 0, false, 0, 0};
   while (best.evaluations < most) {
     const pair_sums at = evaluate(alpha);
     ++best.evaluations;
@@ -95,6 +96,7 @@ PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fract
       least = size;
       best.alpha = alpha;
       best.residual = residual;
+      best.lambda = at.lambda;
     }
     // Where ζ is rounding of its sums, here or over the whole segment, no other α is better.
     const double range = size + std::fabs(at.slope);

@@ -80,7 +80,8 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
   const Eigen::VectorXd start = detail::or_default(options.start, m, 1.0 / static_cast<double>(m), "start");
   const Eigen::VectorXd floors = detail::or_default(options.floors, m, 0, "floors");
   const Eigen::VectorXd costs = detail::or_default(options.costs, m, 1, "costs");
-  validate(std::span(start.data(), static_cast<std::size_t>(m)), std::span(floors.data(), static_cast<std::size_t>(m)),
+  validate(std::span(start.data(), static_cast<std::size_t>(m)),
+           std::span(floors.data(), static_cast<std::size_t>(m)),
            std::span(costs.data(), static_cast<std::size_t>(m)), options.prior);
   validate_costs(divergence, std::span(costs.data(), static_cast<std::size_t>(m)));
   const auto frozen = std::make_unique<bool[]>(static_cast<std::size_t>(m));
@@ -128,9 +129,9 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
                                     .frozen = frozen.get(),
                                     .prior = options.prior,
                                     .variate = options.variate};
-  const row_minimum found = row_minimisation<Divergence, double>(divergence, rows, largest, wanted, memory.data(),
-                                                                 indices.data())
-                                .minimise(result.fractions.data());
+  const row_minimum found =
+      row_minimisation<Divergence, double>(divergence, rows, largest, wanted, memory.data(), indices.data())
+          .minimise(result.fractions.data());
   result.status = found.status;
   result.iterations = found.solution.iterations;
   result.evaluations = found.solution.evaluations;

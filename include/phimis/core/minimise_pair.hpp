@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#ifndef PHIMIS_CORE_MINIMISE_PAIR_HPP
+#define PHIMIS_CORE_MINIMISE_PAIR_HPP
+
+#include <phimis/core/config.hpp>
+#include <phimis/core/divergence.hpp>
+#include <phimis/core/limits.hpp>
+#include <phimis/core/minimise_rows.hpp>
+#include <phimis/core/pair_sums.hpp>
+#include <phimis/core/rule.hpp>
+#include <phimis/core/solve_pair.hpp>
+#include <phimis/core/table.hpp>
+
+#include <cmath>
+
+namespace phimis {
+
+/// `row_minimisation` of two techniques: one number to find, by a bracket that no divergence escapes, kinks and V[F]
+/// included.
+///
+/// Errors as there. residual() is 0 where a score steps across zero within the last digit of α.
+/// Cost   reads all rows once for each evaluation of `solve_pair` and three times more, with one division a row.
+template <class Divergence, class Real>
+class pair_minimisation {
+ public:
+  PHIMIS_HOST_DEVICE pair_minimisation(const Divergence& divergence, const columns<Real, 2>& rows, Real largest,
+                                       const minimisation<Real>& wanted) noexcept
+      : divergence_(divergence), rows_(rows), wanted_(wanted) {
+    constexpr Real smallest = 4 * smallest_normal<Real>;
+    const Real inverse = 1 / (largest > smallest ? largest : smallest);
+    const double n = static_cast<double>(rows.n);
+    double mass[2];
+    mean_ = detail::masses(column_pointers<Real>{rows.u, rows.w, rows.y, rows.n, 2}, inverse, mass) / n;
+    unit_ = static_cast<double>(inverse);
+    silent_ = wanted.silent == silent_technique::kept && (!(mass[0] > 0) || !(mass[1] > 0));
+    for (int k = 0; k < 2; ++k) {
+      kappa_[k] = wanted.variate == control_variate::on && mass[k] > 0 ? n / mass[k] : 1;
+      kappa_[k] /= static_cast<double>(wanted.costs[k]);
+    }
+    if (detail::needs_mean(divergence)) {
+      unit_ /= mean_;
+      mean_ = 1;
+    }
+  }
+
+  PHIMIS_HOST_DEVICE row_minimum minimise(Real* alpha) noexcept {
+    if (silent_ || wanted_.frozen[0] || wanted_.frozen[1]) return {};
+    // The solver's fractions are those of the scaled pdfs: a_k ∝ α_k/κ_k.
+    const double floor1 = static_cast<double>(wanted_.floors[0]);
+    const double floor2 = static_cast<double>(wanted_.floors[1]);
+    const pair_fractions low = to_solver(floor1, 1 - floor1);
+    const pair_fractions high = to_solver(1 - floor2, floor2);
+    const pair_fractions start =
+        to_solver(static_cast<double>(wanted_.from[0]), static_cast<double>(wanted_.from[1]));
+    prior_ = to_solver(static_cast<double>(wanted_.start[0]), static_cast<double>(wanted_.start[1]));
+    const auto evaluate = [&](const pair_fractions& at) { return sums_at(at); };
+    const pair_solution found =
+        solve_pair(evaluate, low, high, start, 4 * rounding, local ? objective::any : objective::convex);
+
+    row_minimum result;
+    result.solution.lambda = found.lambda;
+    result.solution.evaluations = result.solution.iterations = found.evaluations;
+    result.solution.residual = found.residual;
+    // A step of s that crosses zero within the last digit of α is a root of a φ with a kink.
+    const bool converged = found.residual <= 1e4 * rounding;
+    if (!converged && detail::is_kinked<Divergence>::value && found.bracketed) result.solution.residual = 0;
+    if (!local) result.solution.gap = result.solution.residual;
+
+    if (found.alpha.first == low.first && found.alpha.second == low.second) {
+      set(alpha, floor1, 1 - floor1);
+    } else if (found.alpha.first == high.first && found.alpha.second == high.second) {
+      set(alpha, 1 - floor2, floor2);
+    } else {
+      const double first = found.alpha.first * kappa_[0];
+      const double second = found.alpha.second * kappa_[1];
+      set(alpha, first / (first + second), second / (first + second));
+    }
+    const bool solved = converged || !(result.solution.residual > 0);
+    result.status = !solved ? rule_status::not_converged : local ? rule_status::local : rule_status::updated;
+    return result;
+  }
+
+ private:
+  static constexpr bool local = std::is_same<Divergence, multi_sample_variance>::value;
+  static constexpr double rounding = static_cast<double>(epsilon<Real>);
+
+  /// Sums over rows at a point, and the prior's two rows: one for each technique, in which only it has density.
+  PHIMIS_HOST_DEVICE pair_sums sums_at(const pair_fractions& at) const noexcept {
+    const pair_point<Real> point{{static_cast<Real>(at.first), static_cast<Real>(at.second)},
+                                 {static_cast<Real>(kappa_[0]), static_cast<Real>(kappa_[1])},
+                                 static_cast<Real>(unit_),
+                                 wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n),
+                                 wanted_.variate == control_variate::on};
+    pair_sums sums = sum_pair(divergence_, rows_, point);
+    const double weight = static_cast<double>(wanted_.prior);
+    if (weight > 0) {
+      const auto s1 = prior_score(prior_.first, at.first);
+      const auto s2 = prior_score(prior_.second, at.second);
+      sums.zeta += weight * (s1.value - s2.value);
+      if (s1.slope > 0) sums.slope += weight * s1.slope / at.first;
+      if (s2.slope > 0) sums.slope += weight * s2.slope / at.second;
+      sums.lambda += weight * (at.first * std::fabs(s1.value) + at.second * std::fabs(s2.value));
+    }
+    return sums;
+  }
+
+  /// Of a technique with the share π of the start, at the share α; s(0) where the start has none.
+  PHIMIS_HOST_DEVICE score<double> prior_score(double pi, double alpha) const noexcept {
+    const double t = mean_ * pi / alpha;
+    if constexpr (local) {
+      return pi > 0 ? score_at(chi_squared{}, t) : score<double>{0, 0};
+    } else {
+      return pi > 0 ? score_at(divergence_, t) : score<double>{score_at_zero(divergence_), 0};
+    }
+  }
+
+  PHIMIS_HOST_DEVICE pair_fractions to_solver(double first, double second) const noexcept {
+    const double a1 = first / kappa_[0];
+    const double a2 = second / kappa_[1];
+    return {a1 / (a1 + a2), a2 / (a1 + a2)};
+  }
+
+  PHIMIS_HOST_DEVICE static void set(Real* alpha, double first, double second) noexcept {
+    alpha[0] = static_cast<Real>(first);
+    alpha[1] = static_cast<Real>(second);
+  }
+
+  const Divergence& divergence_;
+  const columns<Real, 2>& rows_;
+  const minimisation<Real>& wanted_;
+  double kappa_[2];
+  double unit_;
+  double mean_;
+  pair_fractions prior_{};
+  bool silent_;
+};
+
+}  // namespace phimis
+
+#endif  // PHIMIS_CORE_MINIMISE_PAIR_HPP
