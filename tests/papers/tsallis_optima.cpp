@@ -12,7 +12,7 @@ namespace {
 using namespace papers_test;
 using phimis::analysis::divergence_between_kinks;
 using phimis::analysis::optimum;
-using phimis::analysis::pair_optimum;
+using pair_optimum = phimis::analysis::optimal_fractions<2>;
 using phimis::analysis::variance;
 
 /// A divergence without its type.

@@ -6,12 +6,15 @@
 #include <phimis/analysis/variance.hpp>
 #include <phimis/concepts.hpp>
 #include <phimis/core/limits.hpp>
+#include <phimis/core/minimise_rows.hpp>
 #include <phimis/core/pair_sums.hpp>
 #include <phimis/core/solve_pair.hpp>
 #include <phimis/validate.hpp>
 
 #include <boost/math/tools/roots.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -21,10 +24,13 @@
 namespace phimis::analysis {
 
 /// Fractions that are optimal in a stated sense.
-struct pair_optimum {
-  fractions<double, 2> alpha;
-  double error;     ///< of α_1, from the error of the condition over its slope; 0 at a bound
-  double residual;  ///< KKT residual relative to λ
+template <int M>
+struct optimal_fractions {
+  fractions<double, M> alpha;
+  /// Of the α_k. Of two techniques: from the error of the condition over its slope, 0 at a bound. Of more: how far the
+  /// embedded Gauss rule has its optimum from that of the Kronrod rule, which is far nearer to the truth.
+  double error;
+  double residual;  ///< KKT residual on all coordinates relative to λ
   bool local;       ///< the objective is not convex: this is the minimum downhill of the start
 };
 
@@ -64,8 +70,8 @@ double condition(const Divergence& divergence, const problem<2>& on, double f, c
 }
 
 template <class Divergence>
-pair_optimum solve_on(const Divergence& divergence, const problem<2>& on, const rule_options<double, 2>& options,
-                      const fractions<double, 2>& from) {
+optimal_fractions<2> solve_pair_on(const Divergence& divergence, const problem<2>& on,
+                                   const rule_options<double, 2>& options, const fractions<double, 2>& from) {
   constexpr bool kinked = phimis::detail::is_kinked<Divergence>::value;
   constexpr bool local = std::is_same_v<Divergence, multi_sample_variance>;
   const bool normalised = on.missing_mass()[0] == 0 && on.missing_mass()[1] == 0;
@@ -85,7 +91,7 @@ pair_optimum solve_on(const Divergence& divergence, const problem<2>& on, const 
   const pair_solution found =
       solve_pair(evaluate, low, high, {start[0], start[1]}, 1e-15, local ? objective::any : objective::convex);
 
-  pair_optimum result{
+  optimal_fractions<2> result{
       {{found.alpha.first, found.alpha.second}}, 0, kinked && found.bracketed ? 0 : found.residual, local};
   if (found.alpha.first == low.first || found.alpha.second == high.second) return result;
   // How far ζ may be off, by quadrature, by what is left of it and by the rounding of its sum, over how fast it changes.
@@ -103,6 +109,57 @@ pair_optimum solve_on(const Divergence& divergence, const problem<2>& on, const 
   return result;
 }
 
+/// The score at a point, times Σ p_k: what panels have to resolve.
+template <class Divergence, int M>
+double score_of_all(const Divergence& divergence, const problem<M>& on, double f, const per_technique<double, M>& p,
+                    const fractions<double, M>& alpha) {
+  const double q = mixture(alpha, p);
+  if (q == 0) return 0;
+  double sum = 0;
+  for (const double pdf : p) sum += pdf;
+  const double t = std::fabs(f) / (on.size() * q);
+  if constexpr (phimis::detail::is_variance<Divergence>::value) {
+    return sum * t * t;
+  } else {
+    return sum * (score_at(divergence, t).value - score_at_zero(divergence));
+  }
+}
+
+template <class Divergence, int M>
+optimal_fractions<M> solve_on(const Divergence& divergence, const problem<M>& on,
+                              const rule_options<double, M>& options, const fractions<double, M>& from) {
+  const fractions<double, M> start = with_floors(from, options.floors);
+  const auto solve = [&](const table<double, M>& rows, fractions<double, M>& alpha) {
+    const columns<double, M> view = rows.view();
+    const column_pointers<double> pointers{view.u, view.w, view.y, view.n, M};
+    double largest = 0;
+    for (std::ptrdiff_t j = 0; j < view.n; ++j) largest = std::max(largest, std::fabs(view.u[j]));
+    const minimisation<double> wanted{.start = options.start.value,
+                                      .from = start.value,
+                                      .floors = options.floors.value,
+                                      .costs = options.costs.value,
+                                      .frozen = options.frozen.value,
+                                      .prior = options.prior,
+                                      .mass = 1,
+                                      .variate = control_variate::off};
+    std::array<double, minimise_doubles<Divergence>(M)> memory{};
+    std::array<int, minimise_indices(M)> indices{};
+    alpha = start;
+    return row_minimisation<Divergence, double>(divergence, pointers, largest, wanted, memory.data(), indices.data())
+        .minimise(alpha.value);
+  };
+  const bool is_signed = phimis::detail::is_variance<Divergence>::value;
+  optimal_fractions<M> result{};
+  const row_minimum found = solve(is_signed ? on.signed_rows() : on.rows(), result.alpha);
+  result.residual = found.solution.residual;
+  result.local = found.status == rule_status::local;
+  fractions<double, M> embedded{};
+  solve(on.embedded_rows(), embedded);
+  result.error = 4 * epsilon<double>;
+  for (int k = 0; k < M; ++k) result.error = std::max(result.error, std::fabs(embedded[k] - result.alpha[k]));
+  return result;
+}
+
 }  // namespace detail
 
 /// The divergence as `divergence_at`, with the kinks of the integrand as panel edges.
@@ -112,31 +169,42 @@ measured divergence_between_kinks(const Divergence& divergence, const problem<2>
   return divergence_at(divergence, on.split_at(detail::crossings(on, alpha)), alpha);
 }
 
-/// The fractions of two techniques that minimise a divergence, or V[F], on the exact integrals.
+/// The fractions that minimise a divergence, or V[F], on the exact integrals; cost times either with costs.
 ///
-/// The solver is that of the exact minimiser, on quadrature nodes in place of samples. Where φ has kinks the panels are
-/// split at g = p(α) for every α that it tries; without floors unless they are asked for; kinks of φ elsewhere than at t = 1 enlarge the error.
+/// The solver is that of the exact minimiser, on quadrature nodes in place of samples; without floors unless they are
+/// asked for. Where φ has kinks, which is for two techniques only, the panels are split at g = p(α) for every α that it
+/// tries; kinks of φ elsewhere than at t = 1 enlarge the error.
 ///
 /// Source T Eqs. 16, 18, 25, 27; V[F] by multi_sample_variance.
 /// Errors std::invalid_argument as `validate`; where a reversed divergence is infinite for every α.
-template <divergence Divergence>
-pair_optimum optimum(const Divergence& divergence, const problem<2>& on,
-                     const rule_options<double, 2>& options = without_floors<double, 2>()) {
+template <divergence Divergence, int M>
+optimal_fractions<M> optimum(
+    const Divergence& divergence, const problem<M>& on,
+    const std::type_identity_t<rule_options<double, M>>& options = without_floors<double, M>()) {
   validate(divergence);
   validate(options);
+  validate_costs<Divergence, double>(divergence, options.costs.value);
+  constexpr bool kinked = phimis::detail::is_kinked<Divergence>::value;
+  static_assert(!kinked || M == 2, "the optimum of a divergence with kinks is known for two techniques");
   if (infinite_at_zero(divergence)) {
-    const table<double, 2> rows = on.rows();
+    const table<double, M> rows = on.rows();
     std::ptrdiff_t zeros = 0;
     for (std::ptrdiff_t j = 0; j < rows.size(); ++j) zeros += rows[j].u > 0 ? 0 : 1;
     require(zeros == 0, "divergence", "is infinite where f = 0 < p; number of such nodes", zeros);
   }
-  pair_optimum result = detail::solve_on(divergence, on, options, options.start);
-  if (!phimis::detail::is_kinked<Divergence>::value && result.error > 1e-12) {
+  const auto solve = [&](const problem<M>& with, const fractions<double, M>& from) {
+    if constexpr (M == 2) {
+      if (options.costs[0] == options.costs[1]) return detail::solve_pair_on(divergence, with, options, from);
+    }
+    if constexpr (!kinked) return detail::solve_on(divergence, with, options, from);
+  };
+  optimal_fractions<M> result = solve(on, options.start);
+  if (!kinked && result.error > 1e-12) {
     // Powers of f/p far from 1 need finer panels than f and p themselves: resolve the condition at the solution.
-    const fractions<double, 2> at = result.alpha;
-    const problem<2> refined = on.refined_for(
-        [&](double f, const per_technique<double, 2>& p) { return detail::condition(divergence, on, f, p, at); });
-    result = detail::solve_on(divergence, refined, options, at);
+    const fractions<double, M> at = result.alpha;
+    const problem<M> refined = on.refined_for(
+        [&](double f, const per_technique<double, M>& p) { return detail::score_of_all(divergence, on, f, p, at); });
+    result = solve(refined, at);
   }
   return result;
 }

@@ -111,22 +111,28 @@ class problem {
 
   /// The nodes as rows of a rule.
   table<double, M> rows() const {
-    return rows_of([](double, double u) { return u; });
+    return rows_of(weights_, [](double, double u) { return u; });
   }
 
   /// The nodes as rows in which u has the sign of f.
-  table<double, M> signed_rows() const {
-    return rows_of([](double f, double u) { return std::copysign(u, f); });
-  }
+  table<double, M> signed_rows() const { return signed_rows_of(weights_); }
+
+  /// The same with the weights of the embedded Gauss rule: what it makes of a result tells the error of quadrature.
+  table<double, M> embedded_rows() const { return signed_rows_of(gauss_weights_); }
 
   const std::vector<double>& nodes() const noexcept { return nodes_; }
 
  private:
+  table<double, M> signed_rows_of(const std::vector<double>& weights) const {
+    return rows_of(weights, [](double f, double u) { return std::copysign(u, f); });
+  }
+
   template <class Adjust>
-  table<double, M> rows_of(const Adjust& adjust) const {
+  table<double, M> rows_of(const std::vector<double>& weights, const Adjust& adjust) const {
     table<double, M> rows;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      observation<double, M> node{values_[i], all_pdfs_[i], 1 / weights_[i], 0};
+      if (!(weights[i] > 0)) continue;
+      observation<double, M> node{values_[i], all_pdfs_[i], 1 / weights[i], 0};
       row<double, M> row;
       if (!to_row(node, row)) continue;
       row.u = adjust(values_[i], row.u);
