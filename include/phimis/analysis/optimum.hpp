@@ -193,10 +193,14 @@ optimal_fractions<M> optimum(
     require(zeros == 0, "divergence", "is infinite where f = 0 < p; number of such nodes", zeros);
   }
   const auto solve = [&](const problem<M>& with, const fractions<double, M>& from) {
-    if constexpr (M == 2) {
-      if (options.costs[0] == options.costs[1]) return detail::solve_pair_on(divergence, with, options, from);
+    if constexpr (kinked) {
+      return detail::solve_pair_on(divergence, with, options, from);
+    } else {
+      if constexpr (M == 2) {
+        if (options.costs[0] == options.costs[1]) return detail::solve_pair_on(divergence, with, options, from);
+      }
+      return detail::solve_on(divergence, with, options, from);
     }
-    if constexpr (!kinked) return detail::solve_on(divergence, with, options, from);
   };
   optimal_fractions<M> result = solve(on, options.start);
   if (!kinked && result.error > 1e-12) {
