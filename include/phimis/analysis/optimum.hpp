@@ -172,8 +172,8 @@ measured divergence_between_kinks(const Divergence& divergence, const problem<2>
 /// The fractions that minimise a divergence, or V[F], on the exact integrals; cost times either with costs.
 ///
 /// The solver is that of the exact minimiser, on quadrature nodes in place of samples; without floors unless they are
-/// asked for. Where φ has kinks, which is for two techniques only, the panels are split at g = p(α) for every α that it
-/// tries; kinks of φ elsewhere than at t = 1 enlarge the error.
+/// asked for. Where φ has kinks, the panels are split at g = p(α) for every α that two techniques try; kinks elsewhere than
+/// at t = 1, or of more techniques, enlarge the error.
 ///
 /// Source T Eqs. 16, 18, 25, 27; V[F] by multi_sample_variance.
 /// Errors std::invalid_argument as `validate`; where a reversed divergence is infinite for every α.
@@ -185,7 +185,6 @@ optimal_fractions<M> optimum(
   validate(options);
   validate_costs<Divergence, double>(divergence, options.costs.value);
   constexpr bool kinked = phimis::detail::is_kinked<Divergence>::value;
-  static_assert(!kinked || M == 2, "the optimum of a divergence with kinks is known for two techniques");
   if (infinite_at_zero(divergence)) {
     const table<double, M> rows = on.rows();
     std::ptrdiff_t zeros = 0;
@@ -193,7 +192,7 @@ optimal_fractions<M> optimum(
     require(zeros == 0, "divergence", "is infinite where f = 0 < p; number of such nodes", zeros);
   }
   const auto solve = [&](const problem<M>& with, const fractions<double, M>& from) {
-    if constexpr (kinked) {
+    if constexpr (kinked && M == 2) {
       return detail::solve_pair_on(divergence, with, options, from);
     } else {
       if constexpr (M == 2) {

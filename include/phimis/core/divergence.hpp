@@ -122,13 +122,17 @@ struct phi_taylor {
 
 /// Total variation.  D(g, p) = ½ ∫ |g − p| dx,  φ(t) = ½ |t − 1|
 ///
-/// Source T Sec. 5.4, Eq. 26. Its score is a step: a minimiser brackets the optimum and cannot use slopes.
+/// Source T Sec. 5.4, Eq. 26. Its score is a step: two techniques are bracketed, more are solved with the kink rounded off
+/// to √((t − 1)² + ε²), ε → 0.
 struct total_variation {
   static constexpr bool kinked = true;
+  PHIMIS_HOST_DEVICE static constexpr bool smooth() noexcept { return false; }
   template <class Real>
-  PHIMIS_HOST_DEVICE static phi_taylor<Real> taylor(Real t) noexcept {
-    const Real sign = t > 1 ? Real(1) : t < 1 ? Real(-1) : Real(0);
-    return {sign * (t - 1) / 2, sign / 2, 0};
+  PHIMIS_HOST_DEVICE static phi_taylor<Real> taylor(Real t, Real rounded = 0) noexcept {
+    const Real distance = std::hypot(t - 1, rounded);
+    if (!(distance > 0)) return {0, 0, 0};
+    const Real sine = rounded / distance;
+    return {distance / 2, (t - 1) / distance / 2, sine * sine / distance / 2};
   }
 };
 
@@ -139,13 +143,17 @@ struct total_variation {
 struct pearson_vajda {
   double k = 2;
   static constexpr bool kinked = true;
+  PHIMIS_HOST_DEVICE constexpr bool smooth() const noexcept { return k >= 2; }
   template <class Real>
-  PHIMIS_HOST_DEVICE phi_taylor<Real> taylor(Real t) const noexcept {
+  PHIMIS_HOST_DEVICE phi_taylor<Real> taylor(Real t, Real rounded = 0) const noexcept {
     const Real order = static_cast<Real>(k);
-    const Real distance = std::fabs(t - 1);
-    const Real sign = t > 1 ? Real(1) : t < 1 ? Real(-1) : Real(0);
-    const Real second = order == 1 ? Real(0) : order * (order - 1) * std::pow(distance, order - 2);
-    return {std::pow(distance, order), sign * order * std::pow(distance, order - 1), second};
+    const Real distance = std::hypot(t - 1, rounded);
+    if (!(distance > 0)) return {0, 0, order == 2 ? Real(2) : order < 2 && order > 1 ? infinity<Real> : Real(0)};
+    const Real cosine = (t - 1) / distance;
+    const Real sine = rounded / distance;
+    const Real curvature = (order - 1) * cosine * cosine + sine * sine;
+    return {std::pow(distance, order), cosine * order * std::pow(distance, order - 1),
+            order * curvature * std::pow(distance, order - 2)};
   }
 };
 
@@ -175,7 +183,54 @@ struct reversed {
 template <class Divergence>
 reversed(Divergence) -> reversed<Divergence>;
 
+/// A divergence whose kink at t = 1 is rounded off within `width`.
+template <class Divergence>
+struct rounded_off {
+  Divergence divergence;
+  double width;
+
+  template <class Real>
+  PHIMIS_HOST_DEVICE phi_taylor<Real> taylor(Real t) const noexcept {
+    return divergence.taylor(t, static_cast<Real>(width));
+  }
+};
+
+template <class Divergence>
+PHIMIS_HOST_DEVICE rounded_off<Divergence> round_off(const Divergence& divergence, double width) noexcept {
+  return {divergence, width};
+}
+template <class Divergence>
+PHIMIS_HOST_DEVICE reversed<rounded_off<Divergence>> round_off(const reversed<Divergence>& divergence,
+                                                               double width) noexcept {
+  return {{divergence.forward, width}};
+}
+
+/// Whether a divergence has a kink that has to be rounded off.
+template <class Divergence>
+PHIMIS_HOST_DEVICE auto has_sharp_kink(const Divergence& divergence) noexcept -> decltype(divergence.smooth()) {
+  return !divergence.smooth();
+}
+template <class Divergence>
+PHIMIS_HOST_DEVICE auto has_sharp_kink(const reversed<Divergence>& divergence) noexcept
+    -> decltype(divergence.forward.smooth()) {
+  return !divergence.forward.smooth();
+}
+
 namespace detail {
+
+template <class Divergence, class = void>
+struct can_round_off : std::false_type {};
+template <class Divergence>
+struct can_round_off<Divergence, std::void_t<decltype(has_sharp_kink(std::declval<const Divergence&>()))>>
+    : std::true_type {};
+
+/// A slope at a rounded kink is no scale of a score.
+template <class Divergence>
+struct is_rounded_off : std::false_type {};
+template <class Divergence>
+struct is_rounded_off<rounded_off<Divergence>> : std::true_type {};
+template <class Divergence>
+struct is_rounded_off<reversed<rounded_off<Divergence>>> : std::true_type {};
 
 template <class Divergence, class = void>
 struct is_kinked : std::false_type {};

@@ -65,7 +65,8 @@ struct any_block {
     const Real value = s.value - static_cast<Real>(zero);
     a = w * value;
     b = w * s.slope / x;
-    return w * x * ((value < 0 ? -value : value) + s.slope);
+    const Real slope = is_rounded_off<Divergence>::value && s.slope > 1 ? Real(1) : s.slope;  // of a kink: no scale
+    return w * x * ((value < 0 ? -value : value) + slope);
   }
 };
 
