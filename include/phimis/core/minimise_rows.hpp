@@ -11,6 +11,7 @@
 #include <phimis/core/simplex_problem.hpp>
 #include <phimis/core/variance_on_simplex.hpp>
 
+#include <cstddef>
 #include <type_traits>
 
 namespace phimis {
@@ -178,9 +179,10 @@ class row_minimisation {
   }
 
   template <class Problem>
-  PHIMIS_HOST_DEVICE simplex_solution solve(Problem& problem) noexcept {
+  PHIMIS_HOST_DEVICE simplex_solution solve(Problem& problem, double tolerance = 4 * rounding,
+                                            int opening = 2) noexcept {
     simplex_newton<Problem> solver(problem, simplex_.size(), solver_memory_, solver_indices_);
-    return solver.minimise(theta_, 4 * rounding);
+    return solver.minimise(theta_, tolerance, opening);
   }
 
   PHIMIS_HOST_DEVICE simplex_solution solve_convex() noexcept {
@@ -189,7 +191,19 @@ class row_minimisation {
     }
     auto problem = convex_problem(divergence_);
     problem.choose_unit(theta_);
-    return solve(problem);
+    // A sixteenth of many rows tells where to start: all rows are then read three or four times, not ten.
+    constexpr int every = 16;
+    const bool many = rows_.n >= every * 32 * static_cast<std::ptrdiff_t>(rows_.m < 8 ? 8 : rows_.m);
+    simplex_solution coarse;
+    if (many) {
+      problem.read_every(every);
+      coarse = solve(problem, 1e-4);
+      problem.read_every(1);
+    }
+    simplex_solution found = solve(problem, 4 * rounding, many ? 0 : 2);
+    found.iterations += coarse.iterations;
+    found.evaluations += coarse.evaluations;
+    return found;
   }
 
   /// A kink is rounded off less and less; the residual is that of the last, the gap counts what it hides. A narrower

@@ -75,9 +75,10 @@ struct any_block {
 template <class Real, class Scores>
 class mixture_block_sums {
  public:
+  /// every: 1, or that only one block in so many is read.
   PHIMIS_HOST_DEVICE mixture_block_sums(const column_pointers<Real>& rows, const double* beta, double unit,
-                                        const Scores& scores) noexcept
-      : rows_(rows), beta_(beta), unit_(static_cast<Real>(unit)), scores_(scores) {}
+                                        const Scores& scores, int every) noexcept
+      : rows_(rows), beta_(beta), unit_(static_cast<Real>(unit)), scores_(scores), every_(every) {}
 
   /// λ, and G_k = Σ_j w_j y_kj s(t_j)
   PHIMIS_HOST_DEVICE double gradient(double* gradient) const noexcept {
@@ -150,7 +151,7 @@ class mixture_block_sums {
       const std::ptrdiff_t rest = rows_.n - j;
       const std::ptrdiff_t count = rest < block_rows ? rest / width * width : block_rows;
       body(V{}, j, static_cast<int>(count));
-      j += count;
+      j += count + (every_ - 1) * block_rows;
     }
     if (j < rows_.n) body(Real{}, j, static_cast<int>(rows_.n - j));
   }
@@ -238,6 +239,7 @@ class mixture_block_sums {
   const double* beta_;
   Real unit_;
   const Scores& scores_;
+  int every_;
 };
 
 template <class Real>
@@ -267,13 +269,15 @@ PHIMIS_HOST_DEVICE double masses(const column_pointers<Real>& rows, Real unit, d
 
 }  // namespace detail
 
-/// Hands the sums of a divergence at a mixture to `use`: γ = ½, 1, 2 run without a power function.
+/// Hands the sums of a divergence at a mixture to `use`: γ = ½, 1, 2 run without a power function. Of one block of rows in
+/// `every`.
 template <class Divergence, class Real, class Use>
 PHIMIS_HOST_DEVICE void with_mixture_sums(const Divergence& divergence, const column_pointers<Real>& rows,
-                                          const double* beta, double unit, bool normalised, const Use& use) noexcept {
+                                          const double* beta, double unit, bool normalised, int every,
+                                          const Use& use) noexcept {
   const auto run = [&](const auto& scores) {
     using Scores = std::decay_t<decltype(scores)>;
-    use(detail::mixture_block_sums<Real, Scores>(rows, beta, unit, scores));
+    use(detail::mixture_block_sums<Real, Scores>(rows, beta, unit, scores, every));
   };
   if constexpr (has_exponent<Divergence>::value) {
     const double exponent = divergence.exponent();

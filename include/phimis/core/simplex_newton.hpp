@@ -62,8 +62,9 @@ class simplex_newton {
         support_(indices),
         free_(indices + m) {}
 
-  /// Moves θ to a minimum. Stops at the tolerance, or above it where rounding stops all progress.
-  PHIMIS_HOST_DEVICE simplex_solution minimise(double* theta, double tolerance) noexcept {
+  /// Moves θ to a minimum, with so many multiplicative steps at first. Stops at the tolerance, or above it where rounding
+  /// stops all progress.
+  PHIMIS_HOST_DEVICE simplex_solution minimise(double* theta, double tolerance, int opening = 2) noexcept {
     simplex_solution now;
     if (!enter(theta, now)) return now;
     simplex_solution best;
@@ -78,8 +79,8 @@ class simplex_newton {
       }
       const bool at_rounding = best.residual <= 1e4 * tolerance && stale >= 3;
       if (best.residual <= tolerance || at_rounding || m_ == 1) break;
-      const bool opening = now.iterations < 2 && on_.power() > 0;
-      if (!opening && newton_step(theta, now)) continue;
+      const bool opens = now.iterations < opening && on_.power() > 0;
+      if (!opens && newton_step(theta, now)) continue;
       if (!multiplicative_step(theta, now)) break;
     }
     for (int k = 0; k < m_; ++k) theta[k] = best_[k];

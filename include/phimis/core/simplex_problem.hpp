@@ -154,6 +154,9 @@ class divergence_on_simplex {
     costs_ = costs;
   }
 
+  /// Reads one block of rows in so many: a coarse problem, whose solution is a start.
+  PHIMIS_HOST_DEVICE void read_every(int every) noexcept { every_ = every; }
+
   PHIMIS_HOST_DEVICE double power() const noexcept {
     if (price_ > 0) return 0;
     if constexpr (has_exponent<Divergence>::value) {
@@ -166,7 +169,7 @@ class divergence_on_simplex {
   PHIMIS_HOST_DEVICE double gradient(const double* theta, double* gradient) noexcept {
     on_.at(theta);
     double lambda = 0;
-    with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_,
+    with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
                       [&](const auto& sums) { lambda = sums.gradient(raw_); });
     for (int k = 0; k < rows_.m && prior_ > 0; ++k) {
       const double a = on_.beta()[k] / kappa_[k];
@@ -182,7 +185,7 @@ class divergence_on_simplex {
 
   PHIMIS_HOST_DEVICE void hessian(const int* support, int size, double* hessian) noexcept {
     for (int a = 0; a < size; ++a) techniques_[a] = on_.technique(support[a]);
-    with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_,
+    with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
                       [&](const auto& sums) { sums.hessian(techniques_, size, on_.fixed(), hessian_); });
     add_prior(size);
     on_.pull_back(hessian_, support, size, hessian);
@@ -193,7 +196,7 @@ class divergence_on_simplex {
     if (power() == 0) return;
     on_.at(theta);
     double reference = 0;
-    with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_,
+    with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
                       [&](const auto& sums) { reference = sums.reference(power() > 0); });
     if (!(reference > 0) || !is_finite(1 / reference)) return;
     unit_ /= reference;
@@ -236,6 +239,7 @@ class divergence_on_simplex {
   double mean_;
   double prior_;
   double price_ = 0;
+  int every_ = 1;
   const Real* costs_ = nullptr;
   double* shares_;
   double* raw_;
