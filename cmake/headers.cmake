@@ -12,6 +12,8 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/fractions.hpp
     phimis/core/inverse_variance_fractions.hpp
     phimis/core/limits.hpp
+    phimis/core/linear_equations.hpp
+    phimis/core/linear_heuristic.hpp
     phimis/core/minimise_pair.hpp
     phimis/core/minimise_rows.hpp
     phimis/core/mixture_sums.hpp
@@ -21,14 +23,18 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/pack.hpp
     phimis/core/pair_sums.hpp
     phimis/core/power_terms.hpp
+    phimis/core/projection_sums.hpp
     phimis/core/rule.hpp
     phimis/core/second_order.hpp
     phimis/core/sigma_proportional.hpp
     phimis/core/simplex_newton.hpp
     phimis/core/simplex_problem.hpp
+    phimis/core/solve_dense.hpp
+    phimis/core/solve_nonnegative.hpp
     phimis/core/solve_pair.hpp
     phimis/core/table.hpp
     phimis/core/technique_moments.hpp
+    phimis/core/technique_sums.hpp
     phimis/core/uniform.hpp
     phimis/core/value.hpp
     phimis/core/variance_on_simplex.hpp

@@ -74,12 +74,20 @@ void validate(const rule_options<Real, M>& options) {
   validate<Real>(options.start.value, options.floors.value, options.costs.value, options.prior);
 }
 
-/// Options of a rule that knows nothing of costs and moves all techniques.
+/// Options of a rule that knows nothing of costs.
 template <class Real, int M>
-void validate_plain(const rule_options<Real, M>& options) {
+void validate_equal_costs(const rule_options<Real, M>& options) {
   for (int k = 0; k < M; ++k) {
     require(options.costs[k] == options.costs[0], "costs", "must be equal for a rule that knows nothing of costs",
             options.costs[k]);
+  }
+}
+
+/// Options of a rule that knows nothing of costs and moves all techniques.
+template <class Real, int M>
+void validate_plain(const rule_options<Real, M>& options) {
+  validate_equal_costs(options);
+  for (int k = 0; k < M; ++k) {
     require(!options.frozen[k], "frozen", "must be empty for a rule that moves all techniques; it has technique", k);
   }
 }
