@@ -18,6 +18,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/minimise_rows.hpp
     phimis/core/mixture_sums.hpp
     phimis/core/moments.hpp
+    phimis/core/movable_techniques.hpp
     phimis/core/newton_raphson.hpp
     phimis/core/observation.hpp
     phimis/core/pack.hpp

@@ -5,54 +5,12 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/finite.hpp>
 #include <phimis/core/fractions.hpp>
-#include <phimis/core/limits.hpp>
-#include <phimis/core/rule.hpp>
+#include <phimis/core/movable_techniques.hpp>
 #include <phimis/core/solve_dense.hpp>
 
 #include <cmath>
 
 namespace phimis {
-
-/// The techniques that can move, and where the others are.  α = fixed + free · τ, τ on the simplex of the first `size`
-///
-/// fixed_k is the floor of a technique, or the start of a frozen one: no solver has to know of either.
-template <int M>
-struct movable_techniques {
-  double fixed[M];
-  double free;
-  int technique[M];  ///< increasing
-  int size;
-
-  template <class Real>
-  PHIMIS_HOST_DEVICE explicit movable_techniques(const rule_options<Real, M>& options) noexcept
-      : fixed{}, free(1), technique{}, size(0) {
-    for (int k = 0; k < M; ++k) {
-      fixed[k] = static_cast<double>(options.frozen[k] ? options.start[k] : options.floors[k]);
-      free -= fixed[k];
-      if (!options.frozen[k]) technique[size++] = k;
-    }
-  }
-
-  PHIMIS_HOST_DEVICE bool any() const noexcept { return size > 1 && free > 0; }
-
-  PHIMIS_HOST_DEVICE fractions<double, M> at(const double (&tau)[M]) const noexcept {
-    fractions<double, M> alpha{};
-    for (int k = 0; k < M; ++k) alpha[k] = fixed[k];
-    for (int i = 0; i < size; ++i) alpha[technique[i]] += free * tau[i];
-    return alpha;
-  }
-
-  /// Whether no fraction is below what is fixed.
-  PHIMIS_HOST_DEVICE bool feasible(const double (&tau)[M]) const noexcept {
-    for (int i = 0; i < size; ++i) {
-      if (!(tau[i] >= 0)) return false;
-    }
-    return true;
-  }
-
-  /// The face of the simplex on which every technique moves; bit i is the technique of τ_i.
-  PHIMIS_HOST_DEVICE unsigned all() const noexcept { return (1u << size) - 1u; }
-};
 
 /// The equations of the linear heuristic.  Σ_i α_i P_ik = ν F_k for every k that moves,  Σ α_i = 1
 ///

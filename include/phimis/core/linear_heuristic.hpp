@@ -10,7 +10,6 @@
 #include <phimis/core/moments.hpp>
 #include <phimis/core/projection_sums.hpp>
 #include <phimis/core/rule.hpp>
-#include <phimis/core/solve_nonnegative.hpp>
 #include <phimis/core/technique_sums.hpp>
 
 #include <cstddef>
@@ -112,7 +111,7 @@ class linear_heuristic : public rule_base<Real, M> {
         const auto variance = [this](const phimis::fractions<double, M>& alpha) { return sample_variance(alpha); };
         treated = equations.complete(on) && equations.best_face(on, variance, tau);
       } else {
-        treated = project(on, tau);
+        treated = memory_.projection.fit(on, this->options_.start, this->options_.prior, tau);
       }
       if (!treated) return this->status_ = solved ? rule_status::not_converged : rule_status::no_information;
     }
@@ -186,49 +185,6 @@ class linear_heuristic : public rule_base<Real, M> {
       variance += alpha[k] * t.squares / static_cast<double>(n);
     }
     return variance;
-  }
-
-  /// The nonnegative fit whose weight is nearly 1/p(α) at its own α.
-  PHIMIS_HOST_DEVICE bool project(const movable_techniques<M>& on, double (&tau)[M]) const noexcept {
-    constexpr int steps = 8;  // each brings the weight nearer to 1/p(α) by a factor of 2 to 50
-    phimis::fractions<double, M> alpha = equal_fractions<double, M>();
-    for (int step = 0; step <= steps; ++step) {
-      double g[M][M];
-      double b[M];
-      memory_.projection.equations(alpha, this->options_.start, static_cast<double>(this->options_.prior), g, b);
-      if (!corners_of(on, g, b)) return false;
-      solve_nonnegative<M>(g, b, on.size, tau, rounding);
-      double sum = 0;
-      for (int i = 0; i < on.size; ++i) sum += tau[i];
-      if (!(sum > 0) || !is_finite(sum)) return false;
-      for (int i = 0; i < on.size; ++i) tau[i] /= sum;
-      alpha = on.at(tau);
-    }
-    return true;
-  }
-
-  /// Makes the equations of the pdfs those of the mixtures at the corners fixed + free e_i, whose nonnegative fits are the
-  /// fits that respect the floors. In place, since techniques increase. False where a pdf that can move was 0 everywhere.
-  PHIMIS_HOST_DEVICE static bool corners_of(const movable_techniques<M>& on, double (&g)[M][M],
-                                            double (&b)[M]) noexcept {
-    double row[M] = {};  // G fixed
-    double base = 0;
-    double right = 0;
-    for (int i = 0; i < M; ++i) {
-      for (int k = 0; k < M; ++k) row[i] += g[i][k] * on.fixed[k];
-      base += on.fixed[i] * row[i];
-      right += on.fixed[i] * b[i];
-    }
-    for (int i = 0; i < on.size; ++i) {
-      const int t = on.technique[i];
-      if (!(g[t][t] > 0)) return false;
-      b[i] = right + on.free * b[t];
-      for (int k = 0; k < on.size; ++k) {
-        const int s = on.technique[k];
-        g[i][k] = base + on.free * (row[t] + row[s] + on.free * g[t][s]);
-      }
-    }
-    return true;
   }
 
   technique_sums<Real, M> sums_;

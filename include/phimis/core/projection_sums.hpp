@@ -3,8 +3,12 @@
 #define PHIMIS_CORE_PROJECTION_SUMS_HPP
 
 #include <phimis/core/config.hpp>
+#include <phimis/core/finite.hpp>
 #include <phimis/core/fractions.hpp>
+#include <phimis/core/limits.hpp>
+#include <phimis/core/movable_techniques.hpp>
 #include <phimis/core/observation.hpp>
+#include <phimis/core/solve_nonnegative.hpp>
 
 #include <cstdint>
 
@@ -94,6 +98,30 @@ class projection_sums {
     for (int i = 0; i < M; ++i) {
       for (int k = i + 1; k < M; ++k) g[i][k] = g[k][i];
     }
+  }
+
+  /// The nonnegative fit whose weight is nearly 1/p(α) at its own α: τ[size], summing to one. False where every f is 0, a
+  /// pdf that can move was 0 everywhere, or a sum is not finite.
+  PHIMIS_HOST_DEVICE bool fit(const movable_techniques<M>& on, const fractions<Real, M>& start, Real prior,
+                              double (&tau)[M]) const noexcept {
+    constexpr int steps = 8;  // each brings the weight nearer to 1/p(α) by a factor of 2 to 50
+    fractions<double, M> alpha = equal_fractions<double, M>();
+    for (int step = 0; step <= steps; ++step) {
+      double g[M][M];
+      double b[M];
+      equations(alpha, start, static_cast<double>(prior), g, b);
+      for (int i = 0; i < on.size; ++i) {
+        if (!(g[on.technique[i]][on.technique[i]] > 0)) return false;
+      }
+      on.to_corners(g, b);
+      solve_nonnegative<M>(g, b, on.size, tau, static_cast<double>(epsilon<Real>));
+      double sum = 0;
+      for (int i = 0; i < on.size; ++i) sum += tau[i];
+      if (!(sum > 0) || !is_finite(sum)) return false;
+      for (int i = 0; i < on.size; ++i) tau[i] /= sum;
+      alpha = on.at(tau);
+    }
+    return true;
   }
 
  private:
