@@ -26,6 +26,14 @@ __device__ double rules_of(const Divergence& divergence) {
   return sum;
 }
 
+template <class Divergence>
+__device__ float of_three(const Divergence& divergence) {
+  exact_minimiser<Divergence, fixed_table<float, 3, 32>> exact(divergence);
+  exact.observe({1, {{1, 1, 2}}, 1, 0});
+  exact.update();
+  return exact.fractions()[0] + static_cast<float>(exact.gap());
+}
+
 template <class Heuristic>
 __device__ double contribution_by(const Heuristic& heuristic) {
   const fractions<double, 3> alpha = equal_fractions<double, 3>();
@@ -40,6 +48,9 @@ __global__ void all_of(double* out) {
          rules_of(reversed<pearson_vajda>{});
   *out += contribution_by(balance{}) + contribution_by(power{}) + contribution_by(power{3}) +
           contribution_by(cutoff{}) + contribution_by(maximum{});
+
+  *out += static_cast<double>(of_three(tsallis{1.5}) + of_three(chi_squared{}) + of_three(multi_sample_variance{}) +
+                              of_three(total_variation{}));
 
   const fractions<float, 3> alpha = with_floors<float, 3>({{1, 2, 3}}, {{0.1f, 0.1f, 0.1f}});
   fixed_fractions<float, 3> fixed;

@@ -279,14 +279,12 @@ PHIMIS_HOST_DEVICE void with_mixture_sums(const Divergence& divergence, const co
     using Scores = std::decay_t<decltype(scores)>;
     use(detail::mixture_block_sums<Real, Scores>(rows, beta, unit, scores, every));
   };
-  if constexpr (has_exponent<Divergence>::value) {
-    const double exponent = divergence.exponent();
-    if (exponent == 0.5) return run(detail::power_block<detail::power_half>{{}, exponent});
-    if (exponent == 1) return run(detail::power_block<detail::power_one>{{}, exponent});
-    if (exponent == 2) return run(detail::power_block<detail::power_two>{{}, exponent});
-    if (exponent != 0) return run(detail::power_block<detail::power_any>{{exponent}, exponent});
+  const bool is_power = detail::with_power(divergence, [&](const auto& power, double exponent) {
+    run(detail::power_block<std::decay_t<decltype(power)>>{power, exponent});
+  });
+  if constexpr (detail::needs_any_score<Divergence>::value) {
+    if (!is_power) run(detail::any_block<Divergence>{divergence, normalised ? 0 : score_at_zero(divergence)});
   }
-  run(detail::any_block<Divergence>{divergence, normalised ? 0 : score_at_zero(divergence)});
 }
 
 }  // namespace phimis

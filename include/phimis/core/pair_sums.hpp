@@ -159,21 +159,19 @@ struct variance_terms {
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const columns<Real, 2>& rows,
                                       const pair_point<Real>& at) noexcept {
-  if constexpr (has_exponent<Divergence>::value) {
-    const double exponent = divergence.exponent();
-    if (exponent == 0.5) return detail::sum_powers(detail::power_half{}, exponent, rows, at);
-    if (exponent == 1) return detail::sum_powers(detail::power_one{}, exponent, rows, at);
-    if (exponent == 2) return detail::sum_powers(detail::power_two{}, exponent, rows, at);
-    if (exponent != 0) {
-      return detail::sum_powers(detail::power_any{exponent}, exponent, rows, at);
-    }
+  pair_sums sums{};
+  const bool is_power = detail::with_power(
+      divergence, [&](const auto& power, double exponent) { sums = detail::sum_powers(power, exponent, rows, at); });
+  if (is_power) return sums;
+  if constexpr (detail::needs_any_score<Divergence>::value) {
+    double total[3] = {};
+    const detail::score_terms<Real, Divergence> terms{
+        detail::pair_rows<Real>(rows, at), divergence,
+        at.normalised ? Real(0) : static_cast<Real>(score_at_zero(divergence))};
+    detail::sum_rows<3, Real>(rows.n, terms, total);
+    sums = {total[0], total[1], total[2]};
   }
-  double total[3] = {};
-  const detail::score_terms<Real, Divergence> terms{
-      detail::pair_rows<Real>(rows, at), divergence,
-      at.normalised ? Real(0) : static_cast<Real>(score_at_zero(divergence))};
-  detail::sum_rows<3, Real>(rows.n, terms, total);
-  return {total[0], total[1], total[2]};
+  return sums;
 }
 
 /// pair_sums of the multi-sample variance: ζ = −dV[F]/dα_1, slope = d²V[F]/dα_1², λ = Σ p/q t².

@@ -3,9 +3,11 @@
 #define PHIMIS_CORE_POWER_TERMS_HPP
 
 #include <phimis/core/config.hpp>
+#include <phimis/core/divergence.hpp>
 #include <phimis/core/pack.hpp>
 
 #include <cmath>
+#include <type_traits>
 
 namespace phimis::detail {
 
@@ -39,6 +41,48 @@ struct power_any {
     return w * x * std::pow(u * r, static_cast<Real>(beta));
   }
 };
+
+/// Whether the exponent of a divergence is known from its type.
+template <class Divergence>
+struct exponent_is_constant : std::is_empty<Divergence> {};
+template <class Divergence>
+struct exponent_is_constant<reversed<Divergence>> : exponent_is_constant<Divergence> {};
+
+/// Whether the score may be other than a power of t.
+template <class Divergence, class = void>
+struct needs_any_score : std::true_type {};
+template <class Divergence>
+struct needs_any_score<Divergence,
+                       std::enable_if_t<has_exponent<Divergence>::value && exponent_is_constant<Divergence>::value>>
+    : std::bool_constant<Divergence{}.exponent() == 0> {};
+
+/// Calls use(power, exponent) with the power that fits. False, and no call, where the score is no power of t.
+template <class Divergence, class Use>
+PHIMIS_HOST_DEVICE bool with_power(const Divergence& divergence, const Use& use) noexcept {
+  if constexpr (!has_exponent<Divergence>::value) {
+    return false;
+  } else if constexpr (exponent_is_constant<Divergence>::value) {
+    constexpr double exponent = Divergence{}.exponent();
+    if constexpr (exponent == 0.5) use(power_half{}, exponent);
+    if constexpr (exponent == 1) use(power_one{}, exponent);
+    if constexpr (exponent == 2) use(power_two{}, exponent);
+    if constexpr (exponent != 0.5 && exponent != 1 && exponent != 2 && exponent != 0)
+      use(power_any{exponent}, exponent);
+    return exponent != 0;
+  } else {
+    const double exponent = divergence.exponent();
+    if (exponent == 0.5) {
+      use(power_half{}, exponent);
+    } else if (exponent == 1) {
+      use(power_one{}, exponent);
+    } else if (exponent == 2) {
+      use(power_two{}, exponent);
+    } else if (exponent != 0) {
+      use(power_any{exponent}, exponent);
+    }
+    return exponent != 0;
+  }
+}
 
 }  // namespace phimis::detail
 

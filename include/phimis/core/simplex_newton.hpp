@@ -64,7 +64,8 @@ class simplex_newton {
 
   /// Moves θ to a minimum, with so many multiplicative steps at first. Stops at the tolerance, or above it where rounding
   /// stops all progress.
-  PHIMIS_HOST_DEVICE simplex_solution minimise(double* theta, double tolerance, int opening = 2) noexcept {
+  [[gnu::noinline]] PHIMIS_HOST_DEVICE simplex_solution minimise(double* theta, double tolerance,
+                                                                 int opening = 2) noexcept {
     simplex_solution now;
     if (!enter(theta, now)) return now;
     simplex_solution best;

@@ -75,9 +75,10 @@ enum class objective { convex, any };
 /// Cost     2 to 4 evaluations from a near start, 4 to 10 from most others, 20 where Newton leaves the segment; at most
 ///          150.
 template <class Evaluate>
-PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fractions low, pair_fractions high,
-                                            pair_fractions start, double epsilon,
-                                            objective kind = objective::convex) noexcept {
+[[gnu::noinline]] PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fractions low,
+                                                              pair_fractions high, pair_fractions start,
+                                                              double epsilon,
+                                                              objective kind = objective::convex) noexcept {
   constexpr int most = 150;
   bool low_known = false;  // ζ(low) > 0 was seen
   bool high_known = false;
