@@ -10,6 +10,7 @@
 #include <phimis/core/exact_minimiser.hpp>
 #include <phimis/core/finite.hpp>
 #include <phimis/core/fractions.hpp>
+#include <phimis/core/inverse_variance_fractions.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/moments.hpp>
 #include <phimis/core/newton_raphson.hpp>
@@ -17,8 +18,11 @@
 #include <phimis/core/pack.hpp>
 #include <phimis/core/pair_sums.hpp>
 #include <phimis/core/rule.hpp>
+#include <phimis/core/second_order.hpp>
+#include <phimis/core/sigma_proportional.hpp>
 #include <phimis/core/solve_pair.hpp>
 #include <phimis/core/table.hpp>
+#include <phimis/core/technique_moments.hpp>
 #include <phimis/core/uniform.hpp>
 #include <phimis/core/value.hpp>
 #include <phimis/core/version.hpp>

@@ -4,8 +4,11 @@
 
 #include <phimis/concepts.hpp>
 #include <phimis/core/exact_minimiser.hpp>
+#include <phimis/core/inverse_variance_fractions.hpp>
 #include <phimis/core/newton_raphson.hpp>
 #include <phimis/core/rule.hpp>
+#include <phimis/core/second_order.hpp>
+#include <phimis/core/sigma_proportional.hpp>
 #include <phimis/solver/table.hpp>
 #include <phimis/validate.hpp>
 
@@ -27,19 +30,53 @@ newton_raphson<Divergence, Real> newton_rule(const Divergence& divergence,
                                              const rule_options<Real, 2>& options = {}) {
   validate(divergence);
   validate(options);
+  validate_plain(options);
   return newton_raphson<Divergence, Real>(divergence, form, options);
 }
 
-/// The exact minimiser on all observations, in a table that grows.
+/// The exact minimiser on all observations, in a table that grows; of two techniques unless told otherwise.
 ///
 ///     auto rule = phimis::exact_rule(phimis::tsallis{0.5}, {.floors = {0.05, 0.05}, .prior = 8});
+///     auto of_three = phimis::exact_rule<3>(phimis::chi_squared{}, {.costs = {1, 6.24, 3.28}});
+template <int M, divergence Divergence, class Real = double>
+exact_minimiser<Divergence, table<Real, M>> exact_rule(const Divergence& divergence,
+                                                       const rule_options<Real, M>& options = {},
+                                                       control_variate variate = control_variate::on) {
+  validate(divergence);
+  validate(options);
+  validate_costs<Divergence, Real>(divergence, options.costs.value);
+  return exact_minimiser<Divergence, table<Real, M>>(divergence, options, variate);
+}
 template <divergence Divergence, class Real = double>
 exact_minimiser<Divergence, table<Real, 2>> exact_rule(const Divergence& divergence,
                                                        const rule_options<Real, 2>& options = {},
                                                        control_variate variate = control_variate::on) {
-  validate(divergence);
+  return exact_rule<2, Divergence, Real>(divergence, options, variate);
+}
+
+/// Counts in proportion to each technique's spread under `count_independent` weights.
+///
+///     auto rule = phimis::sigma_rule<3>({.costs = {1, 6.24, 3.28}});
+template <int M, class Real = double, weight_heuristic Heuristic = balance>
+sigma_proportional<Real, M, Heuristic> sigma_rule(const rule_options<Real, M>& options = {},
+                                                  const Heuristic& heuristic = {}) {
   validate(options);
-  return exact_minimiser<Divergence, table<Real, 2>>(divergence, options, variate);
+  validate(heuristic);
+  return sigma_proportional<Real, M, Heuristic>(options, heuristic);
+}
+
+/// Fractions inverse to the variance that each technique has alone, and to its cost.
+template <int M, class Real = double>
+inverse_variance_fractions<Real, M> inverse_variance_rule(const rule_options<Real, M>& options = {}) {
+  validate(options);
+  return inverse_variance_fractions<Real, M>(options);
+}
+
+/// One Newton step for V[ℱ] from the start fractions.
+template <int M, class Real = double>
+second_order<Real, M> second_order_rule(const rule_options<Real, M>& options = {}) {
+  validate(options);
+  return second_order<Real, M>(options);
 }
 
 }  // namespace phimis
