@@ -124,15 +124,21 @@ class simplex_newton {
     now.gap = above / scale;
   }
 
+  PHIMIS_HOST_DEVICE static double larger(double a, double b) noexcept { return a > b ? a : b; }
+
   PHIMIS_HOST_DEVICE bool newton_step(double* theta, simplex_solution& now) noexcept {
     size_ = 0;
     for (int k = 0; k < m_; ++k) {
       if (theta[k] > 0 || gradient_[k] > nu_) support_[size_++] = k;
     }
     on_.hessian(support_, size_, hessian_);
+    // Each coordinate in the scale of its own curvature; a flat one in that of the most curved.
+    double most_curved = 0;
+    for (int a = 0; a < size_; ++a) most_curved = larger(most_curved, std::fabs(hessian_[a * size_ + a]));
+    if (!(most_curved > 0)) most_curved = 1;
     for (int a = 0; a < size_; ++a) {
-      const double diagonal = std::fabs(hessian_[a * size_ + a]);
-      scale_[a] = diagonal > 0 && is_finite(1 / diagonal) ? 1 / std::sqrt(diagonal) : 0;
+      const double curvature = std::fabs(hessian_[a * size_ + a]);
+      scale_[a] = 1 / std::sqrt(is_finite(1 / curvature) ? curvature : most_curved);
     }
     for (int k = 0; k < m_; ++k) step_[k] = 0;
     // A model that is nearly flat may fail to descend; the less it is trusted, the surer it does.
@@ -148,7 +154,7 @@ class simplex_newton {
     int count = 0;
     for (int a = 0; a < size_; ++a) {
       d[a] = -theta[support_[a]];
-      if (scale_[a] > 0) free_[count++] = a;
+      free_[count++] = a;
     }
     const int block_passes = 8;
     const int most = block_passes + 3 * size_;
@@ -183,7 +189,7 @@ class simplex_newton {
       double most_wanted = 0;
       const int before = count;
       for (int a = 0; a < size_; ++a) {
-        bool is_free = !(scale_[a] > 0);
+        bool is_free = false;
         for (int i = 0; i < before && !is_free; ++i) is_free = free_[i] == a;
         if (is_free) continue;
         double wish = gradient_[support_[a]] - nu_ - multiplier;
@@ -354,7 +360,7 @@ class simplex_newton {
   double* best_;
   double* rhs_;
   double* ones_;
-  double* scale_;   // of each in the support: 1/√H_aa, 0 where the model is flat
+  double* scale_;   // of each in the support: 1/√H_aa
   double* target_;  // step of each in the support
   double* hessian_;
   double* factor_;
