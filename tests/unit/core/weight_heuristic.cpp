@@ -2,6 +2,7 @@
 #include "catch.hpp"
 #include "random.hpp"
 
+#include <phimis/core/estimator.hpp>
 #include <phimis/core/weight_heuristic.hpp>
 
 #include <cmath>
@@ -39,7 +40,8 @@ void check_weights(const Heuristic& heuristic) {
       if (!(alpha[k] * pdfs[k] > 0)) REQUIRE(w == 0);
       sum += w;
       // No unit of the pdfs changes a weight.
-      for (const Real unit : {std::numeric_limits<Real>::max() / Real(1e4), std::numeric_limits<Real>::min() * Real(1e8)}) {
+      for (const Real unit :
+           {std::numeric_limits<Real>::max() / Real(1e4), std::numeric_limits<Real>::min() * Real(1e8)}) {
         auto scaled = pdfs;
         for (int l = 0; l < M; ++l) scaled[l] *= unit;
         REQUIRE(std::fabs(heuristic(k, alpha, scaled) - w) <= scaled_rounding);
@@ -111,4 +113,36 @@ TEST_CASE("The heuristics meet where their parameters make them the same") {
 
 TEST_CASE("Power zero shares equally among the techniques that reach a point") {
   for (int k = 0; k < M; ++k) CHECK(phimis::power{0}(k, alpha, pdfs) == (k < 3 ? 1.0 / 3 : 0));
+}
+
+TEST_CASE("Count-independent weights are those of the heuristic at equal fractions, whatever the fractions") {
+  using phimis::count_independent;
+  const auto equal = phimis::equal_fractions<double, M>();
+  random_numbers random(3);
+  for (int i = 0; i < 200; ++i) {
+    const auto p = random_pdfs<double>(random);
+    const auto a = phimis::with_floors(random_pdfs<double>(random), numbers<double>{});
+    double sum = 0;
+    for (int k = 0; k < M; ++k) {
+      REQUIRE(count_independent<>{}(k, a, p) == phimis::balance{}(k, equal, p));
+      REQUIRE(count_independent{phimis::power{3}}(k, a, p) == phimis::power{3}(k, equal, p));
+      REQUIRE(count_independent{phimis::cutoff{0.3}}(k, a, p) == phimis::cutoff{0.3}(k, equal, p));
+      REQUIRE(count_independent{phimis::maximum{}}(k, a, p) == phimis::maximum{}(k, equal, p));
+      sum += count_independent<>{}(k, a, p);
+    }
+    if (phimis::mixture(equal, p) > 0) REQUIRE(sum == Approx(1));
+  }
+  for (int k = 0; k < M; ++k) CHECK(count_independent<>{}(k, alpha, numbers<double>{}) == 0);
+}
+
+TEMPLATE_TEST_CASE(
+    "A contribution under count-independent balance weights is f over the sum of pdfs, over the fraction", "", float,
+    double) {
+  // N times the estimate: y = f / (α_k Σ p)
+  const numbers<TestType> a{{TestType(0.125), TestType(0.25), TestType(0.125), TestType(0.5)}};
+  const numbers<TestType> p{{8, 2, 4, 2}};
+  for (int k = 0; k < M; ++k) {
+    CHECK(phimis::contribution(phimis::count_independent<>{}, k, TestType(3), a, p) == TestType(3) / 16 / a[k]);
+  }
+  CHECK(phimis::contribution(phimis::count_independent<>{}, 0, TestType(0), a, numbers<TestType>{}) == 0);
 }
