@@ -28,6 +28,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/rule.hpp
     phimis/core/second_order.hpp
     phimis/core/sigma_proportional.hpp
+    phimis/core/simplex_model.hpp
     phimis/core/simplex_newton.hpp
     phimis/core/simplex_problem.hpp
     phimis/core/solve_dense.hpp

@@ -5,6 +5,7 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/finite.hpp>
 #include <phimis/core/limits.hpp>
+#include <phimis/core/simplex_model.hpp>
 
 #include <cmath>
 
@@ -22,24 +23,23 @@ struct simplex_solution {
 };
 
 /// Memory of the solver for m coordinates: what a caller without a heap puts on its stack.
-PHIMIS_HOST_DEVICE constexpr int simplex_doubles(int m) noexcept { return (2 * m + 9) * m; }
+PHIMIS_HOST_DEVICE constexpr int simplex_doubles(int m) noexcept {
+  return (m + 8) * m + detail::simplex_model::doubles(m);
+}
 PHIMIS_HOST_DEVICE constexpr int simplex_indices(int m) noexcept { return 2 * m; }
 
 /// Newton's method on the simplex {θ ≥ 0, Σ θ = 1} with an active set that drops and takes back coordinates.
 ///
-/// Each iteration minimises the quadratic model on the simplex: coordinates that the model would make negative are
-/// dropped, dropped ones with a positive multiplier are taken back, until neither is left. The step ends where the
-/// slope of the objective along it has not turned; for a convex objective that is descent without a value. Where no
-/// quadratic step descends, and at the opening, the multiplicative step θ_k ← θ_k (G_k/ν)^{1/β} is taken, which never
-/// ascends. The model is regularised in the scale of its diagonal, so that duplicate and silent coordinates, and fewer
-/// rows than coordinates, leave it solvable.
+/// Each iteration goes to the minimum of the quadratic model on the simplex, as far as the slope of the objective along
+/// the way has not turned; for a convex objective that is descent without a value. Where no such step descends, and at the
+/// opening, the multiplicative step θ_k ← θ_k (G_k/ν)^{1/β} is taken, which never ascends.
 ///
 /// Problem   double gradient(const double* θ, double* G): writes G = −∇, returns its scale λ, and keeps θ;
 ///           void hessian(const int* support, int size, double* H): H[size][size] there, positive semi-definite if convex;
 ///           double power(): β, or 0 where the multiplicative step is not known to descend;
 ///           convex: a constant; if false, double value() there.
-/// Source    the outer method is that of Kim, Carbonetto, Stephens & Anitescu 2020 for γ = 1; here for every score, with
-///           block pivoting inside (Portugal, Júdice & Vicente 1994) and without evaluating the objective.
+/// Source    the outer method is that of Kim, Carbonetto, Stephens & Anitescu 2020 for γ = 1; here for every score, and
+///           without evaluating the objective.
 /// Errors    none; the residual tells.
 /// Cost      an iteration: one gradient or a few, one Hessian over the support, O(m³).
 template <class Problem>
@@ -53,14 +53,12 @@ class simplex_newton {
         trial_gradient_(trial_ + m),
         step_(trial_gradient_ + m),
         best_(step_ + m),
-        rhs_(best_ + m),
-        ones_(rhs_ + m),
-        scale_(ones_ + m),
-        target_(scale_ + m),
-        hessian_(target_ + m),
-        factor_(hessian_ + m * m),
+        at_(best_ + m),
+        excess_(at_ + m),
+        model_step_(excess_ + m),
+        hessian_(model_step_ + m),
         support_(indices),
-        free_(indices + m) {}
+        model_(m, hessian_ + m * m, indices + m) {}
 
   /// Moves θ to a minimum, with so many multiplicative steps at first. Stops at the tolerance, or above it where rounding
   /// stops all progress.
@@ -124,160 +122,24 @@ class simplex_newton {
     now.gap = above / scale;
   }
 
-  PHIMIS_HOST_DEVICE static double larger(double a, double b) noexcept { return a > b ? a : b; }
-
   PHIMIS_HOST_DEVICE bool newton_step(double* theta, simplex_solution& now) noexcept {
-    size_ = 0;
+    int size = 0;
     for (int k = 0; k < m_; ++k) {
-      if (theta[k] > 0 || gradient_[k] > nu_) support_[size_++] = k;
+      if (!(theta[k] > 0) && !(gradient_[k] > nu_)) continue;
+      at_[size] = theta[k];
+      excess_[size] = gradient_[k] - nu_;
+      support_[size++] = k;
     }
-    on_.hessian(support_, size_, hessian_);
-    // Each coordinate in the scale of its own curvature; a flat one in that of the most curved.
-    double most_curved = 0;
-    for (int a = 0; a < size_; ++a) most_curved = larger(most_curved, std::fabs(hessian_[a * size_ + a]));
-    if (!(most_curved > 0)) most_curved = 1;
-    for (int a = 0; a < size_; ++a) {
-      const double curvature = std::fabs(hessian_[a * size_ + a]);
-      scale_[a] = 1 / std::sqrt(is_finite(1 / curvature) ? curvature : most_curved);
-    }
-    for (int k = 0; k < m_; ++k) step_[k] = 0;
+    on_.hessian(support_, size, hessian_);
+    model_.keep(hessian_, size);
     // A model that is nearly flat may fail to descend; the less it is trusted, the surer it does.
-    for (least_delta_ = 1e-12; least_delta_ < 1e3; least_delta_ *= 1e3) {
-      if (quadratic_step(theta) && search(theta, now)) return true;
+    for (double delta = 1e-12; delta < 1e3; delta *= 1e3) {
+      if (!model_.step(at_, excess_, 1e-14 * std::fabs(nu_), delta, model_step_)) continue;
+      for (int k = 0; k < m_; ++k) step_[k] = 0;
+      for (int a = 0; a < size; ++a) step_[support_[a]] = model_step_[a];
+      if (search(theta, now)) return true;
     }
     return false;
-  }
-
-  /// The step to the minimum of the quadratic model on the simplex: step_. False where it does not descend.
-  PHIMIS_HOST_DEVICE bool quadratic_step(const double* theta) noexcept {
-    double* const d = target_;  // of each in the support
-    int count = 0;
-    for (int a = 0; a < size_; ++a) {
-      d[a] = -theta[support_[a]];
-      free_[count++] = a;
-    }
-    const int block_passes = 8;
-    const int most = block_passes + 3 * size_;
-    for (int pass = 0; pass < most; ++pass) {
-      double multiplier = 0;
-      if (count == 0 || !solve_free(count, d, multiplier)) return false;
-      const bool single = pass >= block_passes;
-      // Drop what is negative.
-      int kept = 0;
-      int worst = -1;
-      for (int i = 0; i < count; ++i) {
-        const int a = free_[i];
-        if (theta[support_[a]] + d[a] < 0 &&
-            (worst < 0 || theta[support_[a]] + d[a] < theta[support_[worst]] + d[worst])) {
-          worst = a;
-        }
-      }
-      for (int i = 0; i < count; ++i) {
-        const int a = free_[i];
-        if (single ? a == worst : theta[support_[a]] + d[a] < 0) {
-          d[a] = -theta[support_[a]];
-        } else {
-          free_[kept++] = a;
-        }
-      }
-      if (kept < count) {
-        count = kept;
-        continue;
-      }
-      // Take back what the model would raise.
-      int best = -1;
-      double most_wanted = 0;
-      const int before = count;
-      for (int a = 0; a < size_; ++a) {
-        bool is_free = false;
-        for (int i = 0; i < before && !is_free; ++i) is_free = free_[i] == a;
-        if (is_free) continue;
-        double wish = gradient_[support_[a]] - nu_ - multiplier;
-        for (int b = 0; b < size_; ++b) wish -= hessian_[a * size_ + b] * d[b];
-        if (!(wish > 1e-14 * std::fabs(nu_))) continue;
-        if (single) {
-          if (wish * scale_[a] > most_wanted) {
-            most_wanted = wish * scale_[a];
-            best = a;
-          }
-        } else {
-          free_[count++] = a;
-        }
-      }
-      if (best >= 0) free_[count++] = best;
-      if (count == before) break;
-    }
-    double slope = 0;
-    for (int a = 0; a < size_; ++a) {
-      const int k = support_[a];
-      step_[k] = d[a] < -theta[k] ? -theta[k] : d[a];
-      slope += step_[k] * (gradient_[k] - nu_);
-    }
-    return slope > 0;
-  }
-
-  /// Solves the model on the free coordinates, the others at 0: (H_FF + δ) d_F = G_F − ν − H_FD d_D − multiplier, Σ d = 0.
-  PHIMIS_HOST_DEVICE bool solve_free(int count, double* d, double& multiplier) noexcept {
-    double moved = 0;
-    for (int a = 0; a < size_; ++a) moved += d[a];
-    for (int i = 0; i < count; ++i) moved -= d[free_[i]];
-    for (int i = 0; i < count; ++i) d[free_[i]] = 0;
-    for (int i = 0; i < count; ++i) {
-      const int a = free_[i];
-      double value = gradient_[support_[a]] - nu_;
-      for (int b = 0; b < size_; ++b) {
-        if (d[b] != 0) value -= hessian_[a * size_ + b] * d[b];
-      }
-      rhs_[i] = value * scale_[a];
-      ones_[i] = scale_[a];
-    }
-    double delta = least_delta_;
-    while (!factorise(count, delta)) {
-      delta *= delta < 1e-3 ? 1000 : 3;  // rounding needs little, a model that is not convex some
-      if (delta > 1e30) return false;
-    }
-    solve(count, rhs_);
-    solve(count, ones_);
-    double sum = 0;
-    double total = 0;
-    for (int i = 0; i < count; ++i) {
-      sum += rhs_[i] * scale_[free_[i]];
-      total += ones_[i] * scale_[free_[i]];
-    }
-    multiplier = (sum + moved) / total;
-    for (int i = 0; i < count; ++i) d[free_[i]] = (rhs_[i] - multiplier * ones_[i]) * scale_[free_[i]];
-    return is_finite(multiplier);
-  }
-
-  /// Cholesky's factor of the scaled model, row by row.
-  PHIMIS_HOST_DEVICE bool factorise(int count, double delta) noexcept {
-    for (int i = 0; i < count; ++i) {
-      const int a = free_[i];
-      for (int j = 0; j <= i; ++j) {
-        const int b = free_[j];
-        double value = hessian_[a * size_ + b] * scale_[a] * scale_[b] + (i == j ? delta : 0);
-        for (int l = 0; l < j; ++l) value -= factor_[i * m_ + l] * factor_[j * m_ + l];
-        if (i != j) {
-          factor_[i * m_ + j] = value / factor_[j * m_ + j];
-        } else if (value > delta / 16 && is_finite(value)) {
-          factor_[i * m_ + i] = std::sqrt(value);
-        } else {
-          return false;
-        }
-      }
-    }
-    return true;
-  }
-
-  PHIMIS_HOST_DEVICE void solve(int count, double* x) const noexcept {
-    for (int i = 0; i < count; ++i) {
-      for (int l = 0; l < i; ++l) x[i] -= factor_[i * m_ + l] * x[l];
-      x[i] /= factor_[i * m_ + i];
-    }
-    for (int i = count - 1; i >= 0; --i) {
-      for (int l = i + 1; l < count; ++l) x[i] -= factor_[l * m_ + i] * x[l];
-      x[i] /= factor_[i * m_ + i];
-    }
   }
 
   /// The slope of −objective along step_; Σ step is 0 but for rounding, which the mean of G would multiply.
@@ -358,16 +220,12 @@ class simplex_newton {
   double* trial_gradient_;
   double* step_;
   double* best_;
-  double* rhs_;
-  double* ones_;
-  double* scale_;   // of each in the support: 1/√H_aa
-  double* target_;  // step of each in the support
+  double* at_;  // θ, excess and step of each in the support
+  double* excess_;
+  double* model_step_;
   double* hessian_;
-  double* factor_;
   int* support_;
-  int* free_;  // positions in the support
-  int size_ = 0;
-  double least_delta_ = 0;
+  detail::simplex_model model_;
   double nu_ = 0;
 };
 
