@@ -40,6 +40,15 @@ __device__ double contribution_by(const Heuristic& heuristic) {
   return contribution(heuristic, 1, 1.0, alpha, {{1, 2, 3}});
 }
 
+template <class Rule>
+__device__ double linear_by(Rule rule) {
+  rule.observe({1, {{1, 2, 1}}, 1, 0});
+  rule.observe({2, {{1, 1, 3}}, 1, 1});
+  rule.update();
+  rule.merge(rule);
+  return rule.fractions()[0];
+}
+
 __global__ void all_of(double* out) {
   *out = rules_of(tsallis{1.5}) + rules_of(kullback_leibler{}) + rules_of(chi_squared{}) + rules_of(hellinger{}) +
          rules_of(one_sample_variance{}) + rules_of(multi_sample_variance{}) + rules_of(total_variation{}) +
@@ -51,6 +60,9 @@ __global__ void all_of(double* out) {
 
   *out += static_cast<double>(of_three(tsallis{1.5}) + of_three(chi_squared{}) + of_three(multi_sample_variance{}) +
                               of_three(total_variation{}));
+  *out += linear_by(linear_heuristic<double, 3>()) +
+          linear_by(linear_heuristic<double, 3, negative_fractions::drop_most_negative>()) +
+          linear_by(linear_heuristic<double, 3, negative_fractions::best_face, fixed_table<double, 3, 8>>());
 
   const fractions<float, 3> alpha = with_floors<float, 3>({{1, 2, 3}}, {{0.1f, 0.1f, 0.1f}});
   fixed_fractions<float, 3> fixed;

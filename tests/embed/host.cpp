@@ -69,6 +69,18 @@ bool newton_steps_towards_it() {
   return n[0] + n[1] == 100 && n[0] < 40 && n[0] > 10;
 }
 
+// The linear heuristic finds the mixture of an f in the span of the pdfs from any samples.
+template <phimis::negative_fractions Treatment, class Table, class Real>
+bool linear_finds_it() {
+  phimis::linear_heuristic<Real, 2, Treatment, Table> rule(phimis::without_floors<Real, 2>());
+  static_assert(std::is_trivially_copyable<decltype(rule)>::value, "a pixel's state is copied by its bytes");
+  learn(rule);
+  rule.update();
+  const double distance = static_cast<double>(rule.fractions()[0]) - 0.25;
+  const double tolerance = std::is_same<Real, float>::value ? 1e-4 : 1e-12;
+  return distance < tolerance && -distance < tolerance;
+}
+
 // NaN and infinity by their bits: the compiler must not know that they are there.
 template <class Real, class Bits>
 Real number(Bits bits) {
@@ -120,6 +132,10 @@ bool all_of(Real infinity, Real nan) {
   good = gives_up_the_third<phimis::pearson_vajda, Real>({2}) && good;
   good = gives_up_the_third<phimis::multi_sample_variance, Real>({}) && good;
   good = newton_steps_towards_it<Real>() && good;
+  using phimis::negative_fractions;
+  good = linear_finds_it<negative_fractions::project, phimis::no_table, Real>() && good;
+  good = linear_finds_it<negative_fractions::drop_most_negative, phimis::no_table, Real>() && good;
+  good = linear_finds_it<negative_fractions::best_face, phimis::fixed_table<Real, 2, 32>, Real>() && good;
   good = reports_infinity<phimis::reversed<phimis::kullback_leibler>, Real>() && good;
   good = reports_infinity<phimis::reversed<phimis::chi_squared>, Real>() && good;
   good = reports_infinity<phimis::reversed<phimis::pearson_vajda>, Real>() && good;

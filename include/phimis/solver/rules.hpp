@@ -5,12 +5,15 @@
 #include <phimis/concepts.hpp>
 #include <phimis/core/exact_minimiser.hpp>
 #include <phimis/core/inverse_variance_fractions.hpp>
+#include <phimis/core/linear_heuristic.hpp>
 #include <phimis/core/newton_raphson.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/second_order.hpp>
 #include <phimis/core/sigma_proportional.hpp>
 #include <phimis/solver/table.hpp>
 #include <phimis/validate.hpp>
+
+#include <type_traits>
 
 namespace phimis {
 
@@ -77,6 +80,19 @@ template <int M, class Real = double>
 second_order<Real, M> second_order_rule(const rule_options<Real, M>& options = {}) {
   validate(options);
   return second_order<Real, M>(options);
+}
+
+/// The linear heuristic; best_face keeps its samples in tables that grow.
+///
+///     auto rule = phimis::linear_rule<3>();
+///     auto as_printed = phimis::linear_rule<3, phimis::negative_fractions::drop_most_negative>(
+///         phimis::without_floors<double, 3>());
+template <int M, negative_fractions Treatment = negative_fractions::project, class Real = double>
+auto linear_rule(const rule_options<Real, M>& options = {}) {
+  validate(options);
+  validate_equal_costs(options);
+  using samples = std::conditional_t<Treatment == negative_fractions::best_face, table<Real, M>, no_table>;
+  return linear_heuristic<Real, M, Treatment, samples>(options);
 }
 
 }  // namespace phimis

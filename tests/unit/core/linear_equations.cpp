@@ -167,3 +167,12 @@ TEST_CASE("Equal pdfs, and techniques without samples, have no solution") {
   CHECK_FALSE(silent.solve(on, on.all(), tau));
   CHECK(silent.solve(on, 3, tau));
 }
+
+TEST_CASE("Pdfs that differ by rounding alone have no solution") {
+  const movable_techniques<2> on(free_options<2>());
+  const double third = 0.1 * 3;
+  REQUIRE(third != 0.3);
+  const linear_equations<2> e{{{third, 0.7}, {0.3, 0.7}}, {1, 3}, 2.3e-16};
+  double tau[2];
+  CHECK_FALSE(e.solve(on, on.all(), tau));
+}

@@ -138,6 +138,48 @@ TEST_CASE("A prior alone asks for the start") {
   }
 }
 
+TEST_CASE("At an anchor the prior is a row of each technique, with the weight of that anchor") {
+  const auto rows_of_noise = rows<double>(false);
+  const auto all = of(rows_of_noise);
+  const alpha3 start{{0.2, 0.5, 0.3}};
+  double mean = 0;  // in units of the largest u
+  double largest = 0;
+  for (const auto& row : rows_of_noise) largest = std::fmax(largest, row.u);
+  for (const auto& row : rows_of_noise) mean += row.w * row.u / largest / 60;
+  for (int c = 0; c < 3; ++c) {
+    alpha3 anchor{};
+    for (int k = 0; k < 3; ++k) anchor[k] = sums<double>::anchor(c, k);
+    const equations free = at(all, anchor, 0, start);
+    const equations pulled = at(all, anchor, 7, start);
+    for (int i = 0; i < 3; ++i) {
+      CHECK(pulled.g[i][i] - free.g[i][i] == Approx(7 / anchor[i]).epsilon(1e-12));
+      CHECK(pulled.b[i] - free.b[i] == Approx(7 / anchor[i] * mean * start[i]).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("The fit solves the equations whose weight is that of its own mixture") {
+  const auto all = of(rows<double>(false));
+  const auto options = phimis::without_floors<double, 3>();
+  const phimis::movable_techniques<3> on(options);
+  double tau[3];
+  REQUIRE(all.fit(on, options.start, 0.0, tau));
+  const auto solution = [&](const alpha3& alpha) {
+    equations e = at(all, alpha);
+    double x[3];
+    REQUIRE(phimis::solve_nonnegative<3>(e.g, e.b, 3, x));
+    return alpha3{{x[0] / (x[0] + x[1] + x[2]), x[1] / (x[0] + x[1] + x[2]), x[2] / (x[0] + x[1] + x[2])}};
+  };
+  const alpha3 again = solution(on.at(tau));
+  const alpha3 elsewhere = solution(somewhere);
+  double distance = 0;
+  for (int k = 0; k < 3; ++k) {
+    CHECK(std::fabs(again[k] - tau[k]) <= 1e-5);
+    distance = std::fmax(distance, std::fabs(elsewhere[k] - tau[k]));
+  }
+  CHECK(distance > 1e-3);
+}
+
 TEMPLATE_TEST_CASE("Projections of merged states are those of all rows, in any grouping", "", float, double) {
   const auto all = rows<TestType>(false);
   const double tolerance = 100 * static_cast<double>(std::numeric_limits<TestType>::epsilon());

@@ -111,6 +111,26 @@ TEST_CASE("Duplicate and zero columns, and fewer rows than unknowns, have a fit 
   }
 }
 
+TEST_CASE("Nearly equal columns, of which the second cannot be told from the first, have a fit as well") {
+  random_numbers random(4);
+  for (int trial = 0; trial < 200; ++trial) {
+    matrix g = {};
+    vector b = {};
+    for (int j = 0; j < 12; ++j) {
+      double a[4] = {random(), random(), random(), 0};
+      a[3] = a[1] * (1 + 1e-9 * random());
+      const double target = random();
+      for (int i = 0; i < 4; ++i) {
+        b[i] += a[i] * target;
+        for (int k = 0; k < 4; ++k) g[i][k] += a[i] * a[k];
+      }
+    }
+    vector x;
+    CHECK(solve_nonnegative<most>(g, b, 4, x));
+    CHECK(optimal(g, b, 4, x, 1e-8));
+  }
+}
+
 TEST_CASE("Units of the unknowns change the fit by the units alone") {
   random_numbers random(3);
   for (int trial = 0; trial < 100; ++trial) {
