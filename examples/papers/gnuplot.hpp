@@ -46,6 +46,8 @@ namespace colour {
 inline constexpr const char* blue = "#0072B2";
 inline constexpr const char* vermillion = "#D55E00";
 inline constexpr const char* green = "#009E73";
+inline constexpr const char* purple = "#CC79A7";
+inline constexpr const char* orange = "#E69F00";
 inline constexpr const char* grey = "#757575";
 inline constexpr const char* black = "#000000";
 }  // namespace colour

@@ -25,6 +25,13 @@ struct captioned_figure {
   std::string csv;
 };
 
+/// Numbers of a figure's data, to twelve digits.
+inline std::string csv_line(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ",") + with_digits(value, 12);
+  return text + '\n';
+}
+
 /// Where the figures of a report and their data go.
 inline output_folder figures_of(const output_folder& report) { return output_folder(report.path() / "figures"); }
 

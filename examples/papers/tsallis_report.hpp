@@ -4,6 +4,7 @@
 
 #include <papers/comparison.hpp>
 #include <papers/gnuplot.hpp>
+#include <papers/integrand_figure.hpp>
 #include <papers/report.hpp>
 #include <papers/tsallis_study.hpp>
 
@@ -17,12 +18,6 @@
 namespace papers {
 
 namespace detail {
-
-inline std::string line(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ",") + with_digits(value, 12);
-  return text + '\n';
-}
 
 /// One column of a study against γ.
 template <class Value>
@@ -44,39 +39,12 @@ constexpr const char* variance_axis = "variance for N = 1  (unit of μ²)";
 /// Figs. 1, 4, 7: f/μ superimposed on the pdfs.
 inline captioned_figure integrand_figure(const tsallis_study& of, const std::string& first,
                                          const std::string& second) {
-  const auto& on = of.problem;
-  const auto domain = on.domain();
-  std::vector<std::pair<double, double>> f, p1, p2;
-  std::string csv = "x,f_over_mu,pdf_1,pdf_2\n";
-  double highest = 0;
-  constexpr int steps = 240;
-  for (int i = 0; i <= steps; ++i) {
-    const double x = std::min(domain.lower() + domain.length() * i / steps, domain.upper());
-    const auto pdfs = on.pdfs_at(x);
-    const double g = on.f(x) / on.mean().value;
-    f.emplace_back(x, g);
-    p1.emplace_back(x, pdfs[0]);
-    p2.emplace_back(x, pdfs[1]);
-    csv += detail::line({x, g, pdfs[0], pdfs[1]});
-    highest = std::max({highest, g, pdfs[0], pdfs[1]});
-  }
   const std::string n = std::to_string(of.number);
-  captioned_figure result;
-  result.name = "tsallis_figure_" + std::to_string(3 * of.number - 2);
-  result.caption = "Example " + n + ": f/μ superimposed on the two pdfs";
-  result.csv = csv;
-  result.drawing = {
-      .title = "Fig. " + std::to_string(3 * of.number - 2) + ", example " + n +
-               ": neither pdf alone is proportional to the integrand f",
-      .x_title = "x  (no unit)",
-      .y_title = "density  (1 / unit of x)",
-      .x = {std::floor(domain.lower()), domain.upper()},
-      .y = {0, 1.08 * highest},
-      .series = {{"f / μ", "lines linewidth 4", colour::blue, f},
-                 {"p_1: " + first, "lines linewidth 2.5 dashtype (12,5)", colour::vermillion, p1},
-                 {"p_2: " + second, "lines linewidth 2.5 dashtype (3,4)", colour::green, p2}},
-  };
-  return result;
+  const std::string number = std::to_string(3 * of.number - 2);
+  return integrand_figure(
+      of.problem, "tsallis_figure_" + number, "Example " + n + ": f/μ superimposed on the two pdfs",
+      "Fig. " + number + ", example " + n + ": neither pdf alone is proportional to the integrand f",
+      {first, second});
 }
 
 namespace detail {
@@ -86,11 +54,11 @@ inline std::string variance_csv(const tsallis_study& of) {
       "gamma,alpha,V_F,V_one_sample,newton_alpha,newton_V_F,newton_iterates_that_left_0_1,least_V_F,equal_counts_V_"
       "F\n";
   for (const order& at : of.orders) {
-    std::string row = line({at.gamma, at.alpha[0], at.multi_sample, at.one_sample});
+    std::string row = csv_line({at.gamma, at.alpha[0], at.multi_sample, at.one_sample});
     row.pop_back();
     const std::string newton =
-        at.sampled ? line({at.newton.alpha[0], at.newton.variance, static_cast<double>(at.newton.left)}) : ",,\n";
-    csv += row + ',' + newton.substr(0, newton.size() - 1) + ',' + line({of.least_multi.value, of.equal_multi});
+        at.sampled ? csv_line({at.newton.alpha[0], at.newton.variance, static_cast<double>(at.newton.left)}) : ",,\n";
+    csv += row + ',' + newton.substr(0, newton.size() - 1) + ',' + csv_line({of.least_multi.value, of.equal_multi});
   }
   return csv;
 }
@@ -173,8 +141,8 @@ inline captioned_figure exact_figure(const tsallis_study& of, const std::string&
   result.csv = "gamma,exact_alpha,exact_V_F,newton_alpha,newton_V_F,optimal_V_F,least_V_F,equal_counts_V_F\n";
   for (const order& at : of.orders) {
     if (!at.sampled) continue;
-    result.csv += detail::line({at.gamma, at.exact.alpha[0], at.exact.variance, at.newton.alpha[0],
-                                at.newton.variance, at.multi_sample, of.least_multi.value, of.equal_multi});
+    result.csv += csv_line({at.gamma, at.exact.alpha[0], at.exact.variance, at.newton.alpha[0], at.newton.variance,
+                            at.multi_sample, of.least_multi.value, of.equal_multi});
   }
   std::vector<plot_series> series{{"V[F] by Newton–Raphson", "points pointtype 6 pointsize 0.6 linewidth 1.5",
                                    colour::vermillion, detail::against_gamma(of, newton, true)},
@@ -212,7 +180,7 @@ inline std::string repeated_runs_csv(const std::vector<const tsallis_study*>& st
       if (!at.sampled) continue;
       const summary& n = at.newton_runs;
       const summary& e = at.exact_runs;
-      csv += detail::line(
+      csv += csv_line(
           {static_cast<double>(of->number), at.gamma, n.low, n.median, n.high, n.left, e.low, e.median, e.high});
     }
   }
