@@ -134,12 +134,13 @@ class row_minimisation {
     }
     for (int k = 0; k < rows_.m; ++k) alpha[k] = wanted_.frozen[k] ? wanted_.start[k] : wanted_.from[k];
     simplex_.to_fractions(theta_, alpha);
-    if (found.residual > 1e5 * rounding) return {rule_status::not_converged, found};
+    if (!(found.residual <= acceptable)) return {rule_status::not_converged, found};
     return {local ? rule_status::local : rule_status::updated, found};
   }
 
  private:
   static constexpr double rounding = static_cast<double>(epsilon<Real>);
+  static constexpr double acceptable = sizeof(Real) == 8 ? 1e-10 : 1e-3;
 
   PHIMIS_HOST_DEVICE bool priced() const noexcept {
     for (int k = 1; k < rows_.m; ++k) {
@@ -190,38 +191,60 @@ class row_minimisation {
       if (has_sharp_kink(divergence_)) return solve_kinked();
     }
     auto problem = convex_problem(divergence_);
-    problem.choose_unit(theta_);
+    settle(problem);
     // A sixteenth of many rows tells where to start: all rows are then read three or four times, not ten.
     constexpr int every = 16;
     const bool many = rows_.n >= every * 32 * static_cast<std::ptrdiff_t>(rows_.m < 8 ? 8 : rows_.m);
-    simplex_solution coarse;
+    simplex_solution found;
     if (many) {
       problem.read_every(every);
-      coarse = solve(problem, 1e-4);
+      add(found, solve(problem, 1e-4));
       problem.read_every(1);
+      settle(problem);
     }
-    simplex_solution found = solve(problem, 4 * rounding, many ? 0 : 2);
-    found.iterations += coarse.iterations;
-    found.evaluations += coarse.evaluations;
+    add(found, solve(problem, 4 * rounding, many ? 0 : 2));
+    // Scores may change by many orders of magnitude on the way: the unit of the end is not that of the start.
+    for (int again = 0; again < 4 && !(found.residual <= acceptable); ++again) {
+      problem.choose_unit(theta_);
+      add(found, solve(problem, 4 * rounding, 0));
+    }
     return found;
+  }
+
+  /// The later solution, with the work of both.
+  PHIMIS_HOST_DEVICE static void add(simplex_solution& sum, const simplex_solution& later) noexcept {
+    const int iterations = sum.iterations + later.iterations;
+    const int evaluations = sum.evaluations + later.evaluations;
+    sum = later;
+    sum.iterations = iterations;
+    sum.evaluations = evaluations;
+  }
+
+  /// A start on a face, from which rows with f ≠ 0 are out of reach or nearly, moves inwards; then the unit is chosen.
+  template <class Problem>
+  PHIMIS_HOST_DEVICE void settle(Problem& problem) noexcept {
+    const int size = simplex_.size();
+    bool on_a_face = false;
+    for (int i = 0; i < size; ++i) {
+      on_a_face = on_a_face || theta_[i] < 1e-6;
+      best_[i] = 1.0 / size;
+    }
+    if (on_a_face && !(problem.ratio(theta_, true) <= 1e6 * problem.ratio(best_, true))) {
+      for (int i = 0; i < size; ++i) theta_[i] = 0.99 * theta_[i] + 0.01 / size;
+    }
+    problem.choose_unit(theta_);
   }
 
   /// A kink is rounded off less and less; the residual is that of the last, the gap counts what it hides. A narrower
   /// kink would magnify the rounding of p into the conditions.
   PHIMIS_HOST_DEVICE simplex_solution solve_kinked() noexcept {
     simplex_solution found;
-    simplex_solution total;
     for (double width = 0.1; width > 0.9e-6; width /= 10) {
       const auto smooth = round_off(divergence_, width);
       auto problem = convex_problem(smooth);
-      found = solve(problem);
-      total.iterations += found.iterations;
-      total.evaluations += found.evaluations;
-      total.gap = found.gap + width;
+      add(found, solve(problem));
+      found.gap += width;
     }
-    found.iterations = total.iterations;
-    found.evaluations = total.evaluations;
-    found.gap = total.gap;
     return found;
   }
 
@@ -243,10 +266,14 @@ class row_minimisation {
     auto convex = convex_problem(chi_squared{});
     const double mass = wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n);
     double least = infinity<double>;
+    // What it writes goes to the convex problem's scratch.
+    const auto evaluate = [&](auto& problem) {
+      (void)problem.gradient(theta_, convex_memory_ + rows_.m, convex_memory_ + 2 * rows_.m);
+    };
     const auto look = [&](double price) {
       convex.charge(price * mass, wanted_.costs);
       solve(convex);
-      (void)objective.gradient(theta_, convex_memory_ + rows_.m);  // its raw gradient is the convex problem's scratch
+      evaluate(objective);
       if (!(objective.value() < least)) return false;
       least = objective.value();
       for (int i = 0; i < simplex_.size(); ++i) best_[i] = theta_[i];
@@ -257,7 +284,7 @@ class row_minimisation {
     for (double price = 64 * scale; price > 1e-6 * scale; price /= 4) look(price);
     for (int step = 0; step < 20; ++step) {
       for (int i = 0; i < simplex_.size(); ++i) theta_[i] = best_[i];
-      (void)objective.gradient(theta_, convex_memory_ + rows_.m);
+      evaluate(objective);
       if (!look(objective.variance() / objective.cost())) break;
     }
     for (int i = 0; i < simplex_.size(); ++i) theta_[i] = best_[i];

@@ -38,6 +38,7 @@ struct score_block {
 template <class Power>
 struct power_block {
   static constexpr bool packed = Power::packed;
+  static constexpr bool changes_sign = false;
   Power power;
   double exponent;
 
@@ -56,6 +57,7 @@ struct power_block {
 template <class Divergence>
 struct any_block {
   static constexpr bool packed = false;
+  static constexpr bool changes_sign = true;
   const Divergence& divergence;
   double zero;  // s(0), or 0 where constants cancel
 
@@ -80,16 +82,22 @@ class mixture_block_sums {
                                         const Scores& scores, int every) noexcept
       : rows_(rows), beta_(beta), unit_(static_cast<Real>(unit)), scores_(scores), every_(every) {}
 
-  /// λ, and G_k = Σ_j w_j y_kj s(t_j)
-  PHIMIS_HOST_DEVICE double gradient(double* gradient) const noexcept {
-    for (int k = 0; k < rows_.m; ++k) gradient[k] = 0;
+  /// λ, G_k = Σ_j w_j y_kj s(t_j), and S_k = Σ_j w_j y_kj |s(t_j)|, the size of its terms
+  PHIMIS_HOST_DEVICE double gradient(double* gradient, double* sizes) const noexcept {
+    for (int k = 0; k < rows_.m; ++k) gradient[k] = sizes[k] = 0;
     double lambda = 0;
     for_blocks([&](auto lane, std::ptrdiff_t first, int count) {
       using V = decltype(lane);
       score_block<Real> block;
       lambda += fill<V>(first, count, block);
       for (int k = 0; k < rows_.m; ++k) gradient[k] += dot<V>(rows_.y[k] + first, block.a, count);
+      if constexpr (Scores::changes_sign) {
+        for (int i = 0; i < count; ++i) block.a[i] = block.a[i] < 0 ? -block.a[i] : block.a[i];
+        for (int k = 0; k < rows_.m; ++k) sizes[k] += dot<V>(rows_.y[k] + first, block.a, count);
+      }
     });
+    for (int k = 0; k < rows_.m && !Scores::changes_sign; ++k)
+      sizes[k] = gradient[k] < 0 ? -gradient[k] : gradient[k];
     return lambda;
   }
 

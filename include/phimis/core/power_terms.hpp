@@ -15,8 +15,8 @@ namespace phimis::detail {
 struct power_half {
   static constexpr bool packed = true;
   template <class Real, class V>
-  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V& x, const V&) const noexcept {
-    return w * square_root<Real>(u * x);
+  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V& x, const V& r) const noexcept {
+    return w * x * square_root<Real>(u * r);  // u x may vanish where u/x does not
   }
 };
 struct power_one {

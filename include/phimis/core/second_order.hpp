@@ -30,7 +30,7 @@ class second_order_problem {
 
   PHIMIS_HOST_DEVICE static double power() noexcept { return 0; }
 
-  PHIMIS_HOST_DEVICE double gradient(const double* theta, double* gradient) noexcept {
+  PHIMIS_HOST_DEVICE double gradient(const double* theta, double* gradient, double* sizes) noexcept {
     on_.at(theta);
     double raw[M];
     double lambda = 0;
@@ -40,6 +40,7 @@ class second_order_problem {
       lambda += on_.beta()[k] * b_[k] / mean_cost_;
     }
     on_.pull_back(raw, gradient);
+    for (int i = 0; i < on_.size(); ++i) sizes[i] = std::fabs(gradient[i]);
     return lambda;
   }
 

@@ -33,12 +33,12 @@ class simplex_model {
     double most_curved = 0;
     for (int a = 0; a < size; ++a) {
       const double curvature = std::fabs(hessian[a * size + a]);
-      if (curvature > most_curved) most_curved = curvature;
+      if (curvature > most_curved && is_finite(curvature)) most_curved = curvature;
     }
     if (!(most_curved > 0)) most_curved = 1;
     for (int a = 0; a < size; ++a) {
       const double curvature = std::fabs(hessian[a * size + a]);
-      scale_[a] = 1 / std::sqrt(is_finite(1 / curvature) ? curvature : most_curved);
+      scale_[a] = 1 / std::sqrt(is_finite(1 / curvature) && is_finite(curvature) ? curvature : most_curved);
     }
   }
 

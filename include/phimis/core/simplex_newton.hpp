@@ -16,7 +16,7 @@ namespace phimis {
 ///     G_k = ν where θ_k > 0,   G_k ≤ ν where θ_k = 0,   ν = Σ θ_k G_k
 struct simplex_solution {
   double lambda = 0;                   ///< the scale of G
-  double residual = infinity<double>;  ///< the largest violation on all coordinates, over λ
+  double residual = infinity<double>;  ///< the largest violation on all coordinates, over λ, or S_k if that is larger
   double gap = infinity<double>;  ///< max_k G_k − ν, over λ: a convex objective is within gap · λ of its minimum
   int iterations = 0;
   int evaluations = 0;
@@ -24,7 +24,7 @@ struct simplex_solution {
 
 /// Memory of the solver for m coordinates: what a caller without a heap puts on its stack.
 PHIMIS_HOST_DEVICE constexpr int simplex_doubles(int m) noexcept {
-  return (m + 8) * m + detail::simplex_model::doubles(m);
+  return (m + 9) * m + detail::simplex_model::doubles(m);
 }
 PHIMIS_HOST_DEVICE constexpr int simplex_indices(int m) noexcept { return 2 * m; }
 
@@ -34,7 +34,8 @@ PHIMIS_HOST_DEVICE constexpr int simplex_indices(int m) noexcept { return 2 * m;
 /// the way has not turned; for a convex objective that is descent without a value. Where no such step descends, and at the
 /// opening, the multiplicative step θ_k ← θ_k (G_k/ν)^{1/β} is taken, which never ascends.
 ///
-/// Problem   double gradient(const double* θ, double* G): writes G = −∇, returns its scale λ, and keeps θ;
+/// Problem   double gradient(const double* θ, double* G, double* S): writes G = −∇ and the sizes of its terms, returns its
+///           scale λ, and keeps θ;
 ///           void hessian(const int* support, int size, double* H): H[size][size] there, positive semi-definite if convex;
 ///           double power(): β, or 0 where the multiplicative step is not known to descend;
 ///           convex: a constant; if false, double value() there.
@@ -56,7 +57,8 @@ class simplex_newton {
         at_(best_ + m),
         excess_(at_ + m),
         model_step_(excess_ + m),
-        hessian_(model_step_ + m),
+        sizes_(model_step_ + m),
+        hessian_(sizes_ + m),
         support_(indices),
         model_(m, hessian_ + m * m, indices + m) {}
 
@@ -68,7 +70,7 @@ class simplex_newton {
     if (!enter(theta, now)) return now;
     simplex_solution best;
     int stale = 0;
-    constexpr int most = 500;
+    constexpr int most = 300;
     for (; now.iterations < most; ++now.iterations) {
       certify(theta, now);
       stale = now.residual < best.residual / 2 ? 0 : stale + 1;
@@ -78,7 +80,7 @@ class simplex_newton {
       }
       const bool at_rounding = best.residual <= 1e4 * tolerance && stale >= 3;
       if (best.residual <= tolerance || at_rounding || m_ == 1) break;
-      const bool opens = now.iterations < opening && on_.power() > 0;
+      const bool opens = now.iterations < opening && on_.power() != 0;
       if (!opens && newton_step(theta, now)) continue;
       if (!multiplicative_step(theta, now)) break;
     }
@@ -91,7 +93,7 @@ class simplex_newton {
  private:
   PHIMIS_HOST_DEVICE bool evaluate(const double* at, double* gradient, simplex_solution& now) noexcept {
     ++now.evaluations;
-    const double lambda = on_.gradient(at, gradient);
+    const double lambda = on_.gradient(at, gradient, sizes_);
     bool finite = is_finite(lambda);
     for (int k = 0; k < m_; ++k) finite = finite && is_finite(gradient[k]);
     if (finite) now.lambda = lambda;
@@ -114,12 +116,13 @@ class simplex_newton {
     for (int k = 0; k < m_; ++k) {
       const double excess = gradient_[k] - nu_;
       if (excess > above) above = excess;
-      const double violation = theta[k] > 0 ? std::fabs(excess) : excess;
+      // Where terms cancel, G_k is known no better than its largest.
+      const double scale = now.lambda > sizes_[k] ? now.lambda : sizes_[k];
+      const double violation = scale > 0 ? (theta[k] > 0 ? std::fabs(excess) : excess) / scale : infinity<double>;
       if (violation > worst) worst = violation;
     }
-    const double scale = now.lambda > 0 ? now.lambda : 1;
-    now.residual = worst / scale;
-    now.gap = above / scale;
+    now.residual = worst;
+    now.gap = now.lambda > 0 ? above / now.lambda : infinity<double>;
   }
 
   PHIMIS_HOST_DEVICE bool newton_step(double* theta, simplex_solution& now) noexcept {
@@ -165,7 +168,7 @@ class simplex_newton {
     double noise = 0;
     for (int k = 0; k < m_; ++k) noise += 32 * epsilon<double> * now.lambda * std::fabs(step_[k]);
     double length = 1;
-    for (int attempt = 0; attempt < 40; ++attempt) {
+    for (int attempt = 0; attempt < 24; ++attempt) {
       double sum = 0;
       for (int k = 0; k < m_; ++k) {
         trial_[k] = theta[k] + length * step_[k];
@@ -189,7 +192,7 @@ class simplex_newton {
       // The secant of the slopes; where the objective soars towards the end of the step, that says too little.
       const double secant = finite && slope < 0 ? length * start / (start - slope) : 0;
       const double least = (attempt < 2 ? 0.6 : 0.1) * length;
-      const double largest = 0.9 * length;
+      const double largest = (attempt < 4 ? 0.9 : 0.4) * length;
       length = secant < least ? least : secant > largest ? largest : secant;
     }
     return false;
@@ -197,7 +200,7 @@ class simplex_newton {
 
   PHIMIS_HOST_DEVICE bool multiplicative_step(double* theta, simplex_solution& now) noexcept {
     const double beta = on_.power();
-    if (!(beta > 0) || !(nu_ > 0)) return false;
+    if (!(nu_ * beta > 0)) return false;
     double sum = 0;
     for (int k = 0; k < m_; ++k) {
       trial_[k] = theta[k] > 0 ? theta[k] * std::pow(gradient_[k] / nu_, 1 / beta) : 0;
@@ -223,6 +226,7 @@ class simplex_newton {
   double* at_;  // θ, excess and step of each in the support
   double* excess_;
   double* model_step_;
+  double* sizes_;
   double* hessian_;
   int* support_;
   detail::simplex_model model_;

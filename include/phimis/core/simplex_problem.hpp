@@ -127,7 +127,7 @@ template <class Divergence, class Real>
 class divergence_on_simplex {
  public:
   static constexpr bool convex = true;
-  PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 3 * m + (m + 1) * (m + 1); }
+  PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 4 * m + (m + 1) * (m + 1); }
 
   PHIMIS_HOST_DEVICE divergence_on_simplex(const Divergence& divergence, const column_pointers<Real>& rows,
                                            floored_simplex& on, const double* kappa, bool normalised, double unit,
@@ -142,7 +142,8 @@ class divergence_on_simplex {
         prior_(prior),
         shares_(memory),
         raw_(memory + rows.m),
-        hessian_(raw_ + rows.m),
+        raw_sizes_(raw_ + rows.m),
+        hessian_(raw_sizes_ + rows.m),
         techniques_(indices) {}
 
   /// π[m], to be written before the first gradient where prior > 0.
@@ -166,20 +167,22 @@ class divergence_on_simplex {
     }
   }
 
-  PHIMIS_HOST_DEVICE double gradient(const double* theta, double* gradient) noexcept {
+  PHIMIS_HOST_DEVICE double gradient(const double* theta, double* gradient, double* sizes) noexcept {
     on_.at(theta);
     double lambda = 0;
     with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
-                      [&](const auto& sums) { lambda = sums.gradient(raw_); });
+                      [&](const auto& sums) { lambda = sums.gradient(raw_, raw_sizes_); });
     for (int k = 0; k < rows_.m && prior_ > 0; ++k) {
       const double a = on_.beta()[k] / kappa_[k];
       const score<double> s = prior_score(k, a);
       if (!(a > 0) && !(shares_[k] > 0)) continue;
       raw_[k] += prior_ * s.value / kappa_[k];
+      raw_sizes_[k] += prior_ * std::fabs(s.value) / kappa_[k];
       lambda += prior_ * a * std::fabs(s.value);
     }
     for (int k = 0; k < rows_.m && price_ > 0; ++k) raw_[k] -= price_ * static_cast<double>(costs_[k]) / kappa_[k];
     on_.pull_back(raw_, gradient);
+    on_.pull_back(raw_sizes_, sizes);
     return lambda;
   }
 
@@ -194,13 +197,19 @@ class divergence_on_simplex {
   /// The unit in which the largest |s| at θ is near 1: powers of f/p then neither overflow nor vanish.
   PHIMIS_HOST_DEVICE void choose_unit(const double* theta) noexcept {
     if (power() == 0) return;
-    on_.at(theta);
-    double reference = 0;
-    with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
-                      [&](const auto& sums) { reference = sums.reference(power() > 0); });
+    const double reference = ratio(theta, power() > 0);
     if (!(reference > 0) || !is_finite(1 / reference)) return;
     unit_ /= reference;
     mean_ /= reference;
+  }
+
+  /// The largest f/p at θ, or the smallest that is not 0, in the unit.
+  PHIMIS_HOST_DEVICE double ratio(const double* theta, bool largest) noexcept {
+    on_.at(theta);
+    double found = 0;
+    with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
+                      [&](const auto& sums) { found = sums.reference(largest); });
+    return found;
   }
 
  private:
@@ -243,6 +252,7 @@ class divergence_on_simplex {
   const Real* costs_ = nullptr;
   double* shares_;
   double* raw_;
+  double* raw_sizes_;
   double* hessian_;
   int* techniques_;
 };

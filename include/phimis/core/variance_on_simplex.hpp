@@ -7,6 +7,7 @@
 #include <phimis/core/mixture_sums.hpp>
 #include <phimis/core/simplex_problem.hpp>
 
+#include <cmath>
 #include <cstddef>
 
 namespace phimis {
@@ -52,7 +53,7 @@ class variance_on_simplex {
   PHIMIS_HOST_DEVICE double second_moment() const noexcept { return second_; }
   PHIMIS_HOST_DEVICE double cost() const noexcept { return cost_; }
 
-  PHIMIS_HOST_DEVICE double gradient(const double* theta, double* gradient) noexcept {
+  PHIMIS_HOST_DEVICE double gradient(const double* theta, double* gradient, double* sizes) noexcept {
     const int m = rows_.m;
     on_.at(theta);
     const double* const beta = on_.beta();
@@ -91,6 +92,7 @@ class variance_on_simplex {
     variance_ = second_ - squares;
     for (int k = 0; k < m; ++k) pairs_[k] = -(cost_ * slope_[k] + variance_ * cost(k));
     on_.pull_back(pairs_, gradient);
+    for (int i = 0; i < on_.size(); ++i) sizes[i] = std::fabs(gradient[i]);
     return cost_ * second_;
   }
 

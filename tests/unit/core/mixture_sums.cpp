@@ -39,6 +39,7 @@ constexpr double unit = 0.7;
 struct definition {
   long double lambda = 0;
   long double g[M] = {};
+  long double size[M] = {};
   long double h[M][M] = {};
 
   template <class Divergence, class Real>
@@ -54,6 +55,7 @@ struct definition {
       for (int k = 0; k < M; ++k) {
         const long double yk = rows.y[k][j];
         g[k] += w * yk * (s.value - zero);
+        size[k] += w * yk * std::fabs(s.value - zero);
         for (int l = 0; l < M; ++l) h[k][l] += w * yk * static_cast<long double>(rows.y[l][j]) * s.slope / x;
       }
     }
@@ -87,16 +89,20 @@ TEMPLATE_TEST_CASE("Gradients and Hessians are their definitions for any number 
                                  static_cast<std::size_t>(every));
           double lambda = 0;
           double g[M];
+          double sizes[M];
           double h[9];
           const int support[2] = {4, 1};
           const double fixed[M] = {0, 0.5, 0, 0.25, 0};
           phimis::with_mixture_sums(divergence, view, beta, unit, normalised, every, [&](const auto& sums) {
-            lambda = sums.gradient(g);
+            lambda = sums.gradient(g, sizes);
             sums.hessian(support, 2, fixed, h);
           });
           const double scale = static_cast<double>(truth.lambda) * tolerance;
           CHECK(std::fabs(lambda - static_cast<double>(truth.lambda)) <= scale);
-          for (int k = 0; k < M; ++k) CHECK(std::fabs(g[k] - static_cast<double>(truth.g[k])) <= 10 * scale);
+          for (int k = 0; k < M; ++k) {
+            CHECK(std::fabs(g[k] - static_cast<double>(truth.g[k])) <= 10 * scale);
+            CHECK(std::fabs(sizes[k] - static_cast<double>(truth.size[k])) <= 10 * scale);
+          }
           const auto column = [&](int a, int k) { return a < 2 ? (support[a] == k ? 1.0 : 0.0) : fixed[k]; };
           for (int a = 0; a < 3; ++a) {
             for (int b = 0; b < 3; ++b) {

@@ -16,12 +16,13 @@ struct quadratic {
   std::vector<double> a;
   std::vector<double> b;
 
-  double gradient(const double* theta, double* g) const {
+  double gradient(const double* theta, double* g, double* sizes) const {
     double scale = 0;
     for (int i = 0; i < m; ++i) {
       g[i] = b[static_cast<std::size_t>(i)];
       for (int j = 0; j < m; ++j) g[i] -= a[static_cast<std::size_t>(i * m + j)] * theta[j];
-      scale = std::fmax(scale, std::fabs(g[i]));
+      sizes[i] = std::fabs(g[i]);
+      scale = std::fmax(scale, sizes[i]);
     }
     return scale;
   }
@@ -79,7 +80,8 @@ TEST_CASE("Quadratics of every rank are minimised from every corner and from the
       CHECK(std::fabs(sum - 1) <= 1e-14);
       // The conditions, from the problem itself.
       std::vector<double> g(theta.size());
-      const double scale = on.gradient(theta.data(), g.data());
+      std::vector<double> sizes(theta.size());
+      const double scale = on.gradient(theta.data(), g.data(), sizes.data());
       double nu = 0;
       for (std::size_t k = 0; k < g.size(); ++k) nu += theta[k] * g[k];
       for (std::size_t k = 0; k < g.size(); ++k) {
@@ -98,9 +100,9 @@ struct barrier {
   int m;
   std::vector<double> at{};
 
-  double gradient(const double* theta, double* g) {
+  double gradient(const double* theta, double* g, double* sizes) {
     at.assign(theta, theta + m);
-    for (int k = 0; k < m; ++k) g[k] = b[k] / theta[k];
+    for (int k = 0; k < m; ++k) sizes[k] = g[k] = b[k] / theta[k];
     return 1;
   }
   void hessian(const int* support, int size, double* h) const {
@@ -119,10 +121,10 @@ struct double_well {
   double x = 0;
 
   double value() const { return (x - 0.2) * (x - 0.2) * (x - 0.8) * (x - 0.8) + 0.001 * x; }
-  double gradient(const double* theta, double* g) {
+  double gradient(const double* theta, double* g, double* sizes) {
     x = theta[0];
     g[0] = -(2 * (x - 0.2) * (x - 0.8) * (2 * x - 1) + 0.001);
-    g[1] = 0;
+    g[1] = sizes[0] = sizes[1] = 0;
     return 0.01;
   }
   void hessian(const int* support, int size, double* h) const {
