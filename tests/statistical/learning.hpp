@@ -41,16 +41,18 @@ struct outcome {
 /// A paper's problem with its oracle, and what V[F] is divided by: its minimum, or equal counts' where that is 0.
 template <class Paper>
 struct arena {
-  phimis::analysis::problem<2> oracle{Paper::f, Paper::techniques(), Paper::domain()};
+  static constexpr int M = decltype(Paper::techniques())::techniques;
+
+  phimis::analysis::problem<M> oracle{Paper::f, Paper::techniques(), Paper::domain()};
   decltype(Paper::techniques()) techniques = Paper::techniques();
   double unit = 1;
 
   arena() {
     const auto best = phimis::analysis::optimum(phimis::multi_sample_variance{}, oracle).alpha;
-    unit = variance(best) > 1e-20 ? variance(best) : variance(phimis::equal_fractions<double, 2>());
+    unit = variance(best) > 1e-20 ? variance(best) : variance(phimis::equal_fractions<double, M>());
   }
 
-  double variance(const phimis::fractions<double, 2>& alpha) const {
+  double variance(const phimis::fractions<double, M>& alpha) const {
     const double v = phimis::analysis::variance(oracle, alpha).multi_sample.value;
     return phimis::is_finite(v) ? v : 1e300;
   }
