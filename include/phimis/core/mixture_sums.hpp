@@ -27,11 +27,12 @@ namespace detail {
 
 inline constexpr int block_rows = 64;
 
-/// Scores of a block of rows: a = w s(t), b = w t s'(t)/x, and their part of λ = Σ w x |s|.
+/// Scores of a block of rows: a = w s(t), b = w t s'(t)/x, c = w times the size of s, and their part of λ = Σ x c.
 template <class Real>
 struct score_block {
   Real a[block_rows];
   Real b[block_rows];
+  Real c[block_rows];  // only of scores that change sign
 };
 
 /// In the power family: one division a row.
@@ -43,17 +44,18 @@ struct power_block {
   double exponent;
 
   template <class V, class Real>
-  PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b) const noexcept {
+  PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b, V& c) const noexcept {
     const V r = Real(1) / x;
     const V v = power.template term<Real>(w, u, x, r);
     const V vr = v * r;
     a = exponent < 0 ? -vr : vr;
+    c = vr;
     b = Real(std::fabs(exponent)) * vr * r;
     return v;
   }
 };
 
-/// Any score; its slope is part of λ, so that a score that crosses zero has a scale.
+/// Any score, also one that crosses zero.
 template <class Divergence>
 struct any_block {
   static constexpr bool packed = false;
@@ -62,13 +64,15 @@ struct any_block {
   double zero;  // s(0), or 0 where constants cancel
 
   template <class V, class Real>
-  PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b) const noexcept {
+  PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b, V& c) const noexcept {
     const phimis::score<Real> s = score_at(divergence, u / x);
     const Real value = s.value - static_cast<Real>(zero);
     a = w * value;
     b = w * s.slope / x;
-    const Real slope = is_rounded_off<Divergence>::value && s.slope > 1 ? Real(1) : s.slope;  // of a kink: no scale
-    return w * x * ((value < 0 ? -value : value) + slope);
+    // What cancels in s, and what it changes by; but of a kink, whose slope is no scale.
+    const Real slope = is_rounded_off<Divergence>::value && s.slope > 1 ? Real(1) : s.slope;
+    c = w * ((value < 0 ? -value : value) + slope + static_cast<Real>(zero < 0 ? -zero : zero));
+    return x * c;
   }
 };
 
@@ -82,7 +86,7 @@ class mixture_block_sums {
                                         const Scores& scores, int every) noexcept
       : rows_(rows), beta_(beta), unit_(static_cast<Real>(unit)), scores_(scores), every_(every) {}
 
-  /// λ, G_k = Σ_j w_j y_kj s(t_j), and S_k = Σ_j w_j y_kj |s(t_j)|, the size of its terms
+  /// λ, G_k = Σ_j w_j y_kj s(t_j), and S_k, the size of its terms: Σ_j w_j y_kj |s(t_j)| of a power
   PHIMIS_HOST_DEVICE double gradient(double* gradient, double* sizes) const noexcept {
     for (int k = 0; k < rows_.m; ++k) gradient[k] = sizes[k] = 0;
     double lambda = 0;
@@ -92,8 +96,7 @@ class mixture_block_sums {
       lambda += fill<V>(first, count, block);
       for (int k = 0; k < rows_.m; ++k) gradient[k] += dot<V>(rows_.y[k] + first, block.a, count);
       if constexpr (Scores::changes_sign) {
-        for (int i = 0; i < count; ++i) block.a[i] = block.a[i] < 0 ? -block.a[i] : block.a[i];
-        for (int k = 0; k < rows_.m; ++k) sizes[k] += dot<V>(rows_.y[k] + first, block.a, count);
+        for (int k = 0; k < rows_.m; ++k) sizes[k] += dot<V>(rows_.y[k] + first, block.c, count);
       }
     });
     for (int k = 0; k < rows_.m && !Scores::changes_sign; ++k)
@@ -189,10 +192,12 @@ class mixture_block_sums {
     for (int i = 0; i < count; i += width) {
       W a;
       W b;
+      W c;
       lambda += scores_.template score<W, Real>(load<W>(rows_.w + first + i), unit_ * load<W>(rows_.u + first + i),
-                                                load<W>(x + i), a, b);
+                                                load<W>(x + i), a, b, c);
       store<W>(block.a + i, a);
       store<W>(block.b + i, b);
+      if constexpr (Scores::changes_sign) store<W>(block.c + i, c);
     }
     return sum_of_lanes<Real>(lambda);
   }

@@ -51,11 +51,12 @@ struct definition {
       const auto s = phimis::score_at(divergence, static_cast<long double>(unit) * rows.u[j] / x);
       const long double w = rows.w[j];
       const bool power = phimis::has_exponent<Divergence>::value;
-      lambda += w * x * (std::fabs(s.value - zero) + (power ? 0 : s.slope));
+      const long double term = std::fabs(s.value - zero) + (power ? 0 : s.slope + std::fabs(zero));
+      lambda += w * x * term;
       for (int k = 0; k < M; ++k) {
         const long double yk = rows.y[k][j];
         g[k] += w * yk * (s.value - zero);
-        size[k] += w * yk * std::fabs(s.value - zero);
+        size[k] += w * yk * term;
         for (int l = 0; l < M; ++l) h[k][l] += w * yk * static_cast<long double>(rows.y[l][j]) * s.slope / x;
       }
     }
