@@ -77,7 +77,7 @@ struct is_variance<multi_sample_variance> : std::true_type {};
 /// Memory of `minimise_rows` for m techniques: what a caller without a heap puts on its stack.
 template <class Divergence>
 PHIMIS_HOST_DEVICE constexpr int minimise_doubles(int m) noexcept {
-  return 3 * m + floored_simplex::doubles(m) + divergence_on_simplex<chi_squared, double>::doubles(m) +
+  return 4 * m + floored_simplex::doubles(m) + divergence_on_simplex<chi_squared, double>::doubles(m) +
          (detail::is_variance<Divergence>::value ? variance_on_simplex<double>::doubles(m) : 0) + simplex_doubles(m);
 }
 PHIMIS_HOST_DEVICE constexpr int minimise_indices(int m) noexcept { return 3 * m + simplex_indices(m); }
@@ -103,31 +103,30 @@ class row_minimisation {
         kappa_(memory),
         theta_(kappa_ + rows.m),
         best_(theta_ + rows.m),
-        convex_memory_(best_ + rows.m + floored_simplex::doubles(rows.m)),
+        prior_shares_(best_ + rows.m),
+        convex_memory_(prior_shares_ + rows.m + floored_simplex::doubles(rows.m)),
         solver_memory_(convex_memory_ + divergence_on_simplex<chi_squared, double>::doubles(rows.m)),
         variance_memory_(solver_memory_ + simplex_doubles(rows.m)),
         silent_(indices),
         problem_indices_(indices + 2 * rows.m),
         solver_indices_(indices + 3 * rows.m),
-        simplex_(rows.m, kappa_, best_ + rows.m, indices + rows.m) {
+        simplex_(rows.m, kappa_, prior_shares_ + rows.m, indices + rows.m) {
     constexpr Real smallest = 4 * smallest_normal<Real>;
     const Real inverse = 1 / (largest > smallest ? largest : smallest);
     unit_ = static_cast<double>(inverse);
-    mean_ = detail::masses(rows, inverse, kappa_) / static_cast<double>(rows.n);
+    mean_ = detail::masses(rows, inverse, kappa_) / mass();
     constrain();
   }
 
   PHIMIS_HOST_DEVICE row_minimum minimise(Real* alpha) noexcept {
-    if (!simplex_.has_freedom()) return {};
+    if (!simplex_.has_freedom() && !alone()) return {};
     simplex_.to_theta(wanted_.from, theta_);
     simplex_solution found;
     bool local = false;
     if constexpr (std::is_same<Divergence, multi_sample_variance>::value) {
-      if (priced()) scan_prices(sampling_model::multi_sample);
       found = solve_variance(sampling_model::multi_sample);
       local = true;
     } else if constexpr (detail::is_variance<Divergence>::value) {
-      if (priced()) scan_prices(sampling_model::one_sample);
       found = priced() ? solve_variance(sampling_model::one_sample) : solve_convex();
     } else {
       found = solve_convex();
@@ -149,41 +148,50 @@ class row_minimisation {
     return false;
   }
 
-  /// From masses to κ, and the floors.
+  /// What sums are divided by to be means.
+  PHIMIS_HOST_DEVICE double mass() const noexcept {
+    return wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n);
+  }
+
+  /// Whether one technique takes what the floors of silent ones leave.
+  PHIMIS_HOST_DEVICE bool alone() const noexcept {
+    return wanted_.silent == silent_technique::judged && simplex_.size() == 1;
+  }
+
+  /// From masses to κ, the floors, and the centre of the prior.
   PHIMIS_HOST_DEVICE void constrain() noexcept {
     const double n = static_cast<double>(rows_.n);
     for (int k = 0; k < rows_.m; ++k) {
-      silent_[k] = wanted_.silent == silent_technique::kept && !(kappa_[k] > 0) ? 1 : 0;
+      silent_[k] = !(kappa_[k] > 0) ? 1 : 0;
       kappa_[k] = wanted_.variate == control_variate::on && kappa_[k] > 0 ? n / kappa_[k] : 1;
       if (!detail::is_variance<Divergence>::value) kappa_[k] /= static_cast<double>(wanted_.costs[k]);
     }
     simplex_.constrain([&](int k) { return wanted_.frozen[k] || silent_[k] != 0; },
                        [&](int k) {
                          if (wanted_.frozen[k]) return wanted_.start[k];
-                         return silent_[k] != 0 ? wanted_.from[k] : wanted_.floors[k];
+                         const bool kept = silent_[k] != 0 && wanted_.silent == silent_technique::kept;
+                         return kept ? wanted_.from[k] : wanted_.floors[k];
                        });
+    double sum = 0;
+    for (int k = 0; k < rows_.m; ++k) sum += static_cast<double>(wanted_.start[k]) / kappa_[k];
+    for (int k = 0; k < rows_.m; ++k) prior_shares_[k] = static_cast<double>(wanted_.start[k]) / kappa_[k] / sum;
   }
 
   template <class Objective>
   PHIMIS_HOST_DEVICE divergence_on_simplex<Objective, Real> convex_problem(const Objective& objective) noexcept {
     // Only powers of t are free of the unit of f; the others want t = g/p, g = f/μ̂.
     const bool in_means = detail::needs_mean(objective);
-    divergence_on_simplex<Objective, Real> problem(
+    return divergence_on_simplex<Objective, Real>(
         objective, rows_, simplex_, kappa_, wanted_.variate == control_variate::on, unit_ / (in_means ? mean_ : 1),
-        in_means ? 1 : mean_, static_cast<double>(wanted_.prior), convex_memory_, problem_indices_);
-    double sum = 0;
-    for (int k = 0; k < rows_.m; ++k) sum += static_cast<double>(wanted_.start[k]) / kappa_[k];
-    for (int k = 0; k < rows_.m; ++k) {
-      problem.prior_shares()[k] = static_cast<double>(wanted_.start[k]) / kappa_[k] / sum;
-    }
-    return problem;
+        in_means ? 1 : mean_, static_cast<double>(wanted_.prior), prior_shares_, convex_memory_, problem_indices_);
   }
 
   template <class Problem>
   PHIMIS_HOST_DEVICE simplex_solution solve(Problem& problem, double tolerance = 4 * rounding,
                                             int opening = 2) noexcept {
     simplex_newton<Problem> solver(problem, simplex_.size(), solver_memory_, solver_indices_);
-    return solver.minimise(theta_, tolerance, opening);
+    // Sums over rows are those of Real, but for the variances, which take rows to double.
+    return solver.minimise(theta_, tolerance, opening, Problem::convex ? rounding : epsilon<double>);
   }
 
   PHIMIS_HOST_DEVICE simplex_solution solve_convex() noexcept {
@@ -239,7 +247,8 @@ class row_minimisation {
   /// kink would magnify the rounding of p into the conditions.
   PHIMIS_HOST_DEVICE simplex_solution solve_kinked() noexcept {
     simplex_solution found;
-    for (double width = 0.1; width > 0.9e-6; width /= 10) {
+    constexpr double least = sizeof(Real) == 8 ? 1e-6 : 1e-4;
+    for (double width = 0.1; width > 0.9 * least; width /= 10) {
       const auto smooth = round_off(divergence_, width);
       auto problem = convex_problem(smooth);
       add(found, solve(problem));
@@ -249,30 +258,36 @@ class row_minimisation {
   }
 
   PHIMIS_HOST_DEVICE variance_on_simplex<Real> variance_problem(sampling_model model) noexcept {
-    return variance_on_simplex<Real>(model, rows_, simplex_, kappa_, priced() ? wanted_.costs : nullptr, unit_,
-                                     wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n),
-                                     variance_memory_);
+    const double prior = static_cast<double>(wanted_.prior) * mean_ * mean_ / mass();
+    return variance_on_simplex<Real>(model, rows_, simplex_, kappa_, priced() ? wanted_.costs : nullptr, unit_, mass(),
+                                     prior, prior_shares_, variance_memory_);
   }
 
   PHIMIS_HOST_DEVICE simplex_solution solve_variance(sampling_model model) noexcept {
+    simplex_solution found;
+    if (priced()) found = scan_prices(model);
     auto problem = variance_problem(model);
-    return solve(problem);
+    add(found, solve(problem));
+    found.gap = infinity<double>;  // a bound of what is convex
+    return found;
   }
 
   /// θ near the global minimum of C V: C V = min_τ (τ C + V/τ)²/4, and τ² C + V is convex in the one-sample model. τ² is
   /// V/C at the minimum: it is looked for over the decades that V and C span, then followed downhill.
-  PHIMIS_HOST_DEVICE void scan_prices(sampling_model model) noexcept {
+  PHIMIS_HOST_DEVICE simplex_solution scan_prices(sampling_model model) noexcept {
+    simplex_solution work;
     auto objective = variance_problem(model);
     auto convex = convex_problem(chi_squared{});
-    const double mass = wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n);
     double least = infinity<double>;
+    for (int i = 0; i < simplex_.size(); ++i) best_[i] = theta_[i];
     // What it writes goes to the convex problem's scratch.
     const auto evaluate = [&](auto& problem) {
-      (void)problem.gradient(theta_, convex_memory_ + rows_.m, convex_memory_ + 2 * rows_.m);
+      (void)problem.gradient(theta_, convex_memory_, convex_memory_ + rows_.m);
+      ++work.evaluations;
     };
     const auto look = [&](double price) {
-      convex.charge(price * mass, wanted_.costs);
-      solve(convex);
+      convex.charge(price * mass(), wanted_.costs);
+      add(work, solve(convex));
       evaluate(objective);
       if (!(objective.value() < least)) return false;
       least = objective.value();
@@ -288,6 +303,7 @@ class row_minimisation {
       if (!look(objective.variance() / objective.cost())) break;
     }
     for (int i = 0; i < simplex_.size(); ++i) theta_[i] = best_[i];
+    return work;
   }
 
   const Divergence& divergence_;
@@ -296,6 +312,7 @@ class row_minimisation {
   double* kappa_;
   double* theta_;
   double* best_;
+  double* prior_shares_;
   double* convex_memory_;
   double* solver_memory_;
   double* variance_memory_;

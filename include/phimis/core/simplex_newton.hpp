@@ -42,7 +42,7 @@ PHIMIS_HOST_DEVICE constexpr int simplex_indices(int m) noexcept { return 2 * m;
 /// Source    the outer method is that of Kim, Carbonetto, Stephens & Anitescu 2020 for γ = 1; here for every score, and
 ///           without evaluating the objective.
 /// Errors    none; the residual tells.
-/// Cost      an iteration: one gradient or a few, one Hessian over the support, O(m³).
+/// Cost      an iteration: one gradient or a few, one Hessian over the support, O(m³); about 1000 gradients at most.
 template <class Problem>
 class simplex_newton {
  public:
@@ -62,16 +62,18 @@ class simplex_newton {
         support_(indices),
         model_(m, hessian_ + m * m, indices + m) {}
 
-  /// Moves θ to a minimum, with so many multiplicative steps at first. Stops at the tolerance, or above it where rounding
-  /// stops all progress.
-  [[gnu::noinline]] PHIMIS_HOST_DEVICE simplex_solution minimise(double* theta, double tolerance,
-                                                                 int opening = 2) noexcept {
+  /// Moves θ to a minimum, with so many multiplicative steps at first. Stops at the tolerance, or above it where rounding,
+  /// that of the numbers of which G is a sum, stops all progress.
+  [[gnu::noinline]] PHIMIS_HOST_DEVICE simplex_solution minimise(double* theta, double tolerance, int opening = 2,
+                                                                 double rounding = epsilon<double>) noexcept {
+    rounding_ = rounding;
     simplex_solution now;
     if (!enter(theta, now)) return now;
     simplex_solution best;
     int stale = 0;
     constexpr int most = 300;
-    for (; now.iterations < most; ++now.iterations) {
+    constexpr int most_evaluations = 1000;
+    for (; now.iterations < most && now.evaluations < most_evaluations; ++now.iterations) {
       certify(theta, now);
       stale = now.residual < best.residual / 2 ? 0 : stale + 1;
       if (now.residual < best.residual) {
@@ -134,13 +136,20 @@ class simplex_newton {
       support_[size++] = k;
     }
     on_.hessian(support_, size, hessian_);
+    // No coordinate alone is to go further than the simplex is long: a nearly flat one would drown the others.
+    for (int a = 0; a < size; ++a) {
+      const double least = std::fabs(excess_[a]);
+      if (hessian_[a * size + a] < least) hessian_[a * size + a] = least;
+    }
     model_.keep(hessian_, size);
+    double value = 0;  // at θ: a trial that fails leaves its own behind
+    if constexpr (!Problem::convex) value = on_.value();
     // A model that is nearly flat may fail to descend; the less it is trusted, the surer it does.
     for (double delta = 1e-12; delta < 1e3; delta *= 1e3) {
-      if (!model_.step(at_, excess_, 1e-14 * std::fabs(nu_), delta, model_step_)) continue;
+      if (!model_.step(at_, excess_, 50 * rounding_ * std::fabs(nu_), delta, model_step_)) continue;
       for (int k = 0; k < m_; ++k) step_[k] = 0;
       for (int a = 0; a < size; ++a) step_[support_[a]] = model_step_[a];
-      if (search(theta, now)) return true;
+      if (search(theta, value, now)) return true;
     }
     return false;
   }
@@ -161,12 +170,10 @@ class simplex_newton {
   }
 
   /// Goes along step_ as far as the slope does not turn by more than a tenth.
-  PHIMIS_HOST_DEVICE bool search(double* theta, simplex_solution& now) noexcept {
+  PHIMIS_HOST_DEVICE bool search(double* theta, double value, simplex_solution& now) noexcept {
     const double start = slope_along(theta, gradient_);
-    double value = 0;
-    if constexpr (!Problem::convex) value = on_.value();
     double noise = 0;
-    for (int k = 0; k < m_; ++k) noise += 32 * epsilon<double> * now.lambda * std::fabs(step_[k]);
+    for (int k = 0; k < m_; ++k) noise += 32 * rounding_ * now.lambda * std::fabs(step_[k]);
     double length = 1;
     for (int attempt = 0; attempt < 24; ++attempt) {
       double sum = 0;
@@ -231,6 +238,7 @@ class simplex_newton {
   int* support_;
   detail::simplex_model model_;
   double nu_ = 0;
+  double rounding_ = 0;
 };
 
 }  // namespace phimis

@@ -91,6 +91,10 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
   }
 
   minimum result{.fractions = start, .counters = {}};
+  const Eigen::VectorXd above = (start - floors).cwiseMax(0);
+  if (above.sum() > 0 && (start - floors).minCoeff() < 0) {
+    result.fractions = floors + (1 - floors.sum()) * above / above.sum();
+  }
   Eigen::VectorXd u(n);
   Eigen::VectorXd w(n);
   Eigen::MatrixXd y(n, m);
