@@ -20,7 +20,7 @@ namespace phimis {
 /// Table     where rows are kept: fixed_table, or table, which grows.
 /// Requires  each observation with the density q_j that it was drawn from, however long ago.
 /// Errors    `status()`; `residual()` is the KKT residual on all coordinates relative to λ, `gap()` bounds what the
-///           objective has left, in units of λ. A technique that no observation has a density of keeps its fraction.
+///           objective has left, in units of λ; infinite where it is not convex. A technique that no observation has a density of keeps its fraction.
 /// Cost      as `pair_minimisation` for two techniques, `row_minimisation` for more; for these, on the stack,
 ///           8 · minimise_doubles(M) bytes: 9 kB for 16 techniques.
 ///

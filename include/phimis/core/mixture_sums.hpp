@@ -137,14 +137,15 @@ class mixture_block_sums {
     }
   }
 
-  /// The t of the largest |s| among rows with u > 0; 0 without any.
+  /// The |t| of the largest |s| among rows with u ≠ 0; 0 without any.
   PHIMIS_HOST_DEVICE double reference(bool largest) const noexcept {
     double found = 0;
     for (std::ptrdiff_t j = 0; j < rows_.n; ++j) {
-      if (!(rows_.u[j] > 0)) continue;
+      const Real u = rows_.u[j] < 0 ? -rows_.u[j] : rows_.u[j];
+      if (!(u > 0)) continue;
       Real x[1];
       mix<Real>(beta_, tiny, j, 1, x);
-      const double t = static_cast<double>(unit_ * rows_.u[j] / x[0]);
+      const double t = static_cast<double>(unit_ * u / x[0]);
       if (!(found > 0) || (largest ? t > found : t < found)) found = t;
     }
     return found;
@@ -255,6 +256,7 @@ class mixture_block_sums {
   int every_;
 };
 
+/// w |y| factor
 template <class Real>
 struct product_terms {
   static constexpr bool packed = true;
@@ -264,11 +266,12 @@ struct product_terms {
 
   template <class V>
   PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[1]) const noexcept {
-    sums[0] += load<V>(w + j) * (load<V>(y + j) * factor);
+    const V v = load<V>(w + j) * (load<V>(y + j) * factor);
+    sums[0] += v < V{} ? -v : v;
   }
 };
 
-/// Σ_j w_j y_kj of every technique, and returns Σ_j w_j u_j unit.
+/// Σ_j w_j y_kj of every technique, and returns Σ_j w_j |u_j| unit.
 template <class Real>
 PHIMIS_HOST_DEVICE double masses(const column_pointers<Real>& rows, Real unit, double* mass) noexcept {
   const auto product = [&](const Real* y, Real factor) {

@@ -127,11 +127,12 @@ template <class Divergence, class Real>
 class divergence_on_simplex {
  public:
   static constexpr bool convex = true;
-  PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 4 * m + (m + 1) * (m + 1); }
+  PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 2 * m + (m + 1) * (m + 1); }
 
   PHIMIS_HOST_DEVICE divergence_on_simplex(const Divergence& divergence, const column_pointers<Real>& rows,
                                            floored_simplex& on, const double* kappa, bool normalised, double unit,
-                                           double mean, double prior, double* memory, int* indices) noexcept
+                                           double mean, double prior, const double* prior_shares, double* memory,
+                                           int* indices) noexcept
       : divergence_(divergence),
         rows_(rows),
         on_(on),
@@ -140,14 +141,11 @@ class divergence_on_simplex {
         unit_(unit),
         mean_(mean),
         prior_(prior),
-        shares_(memory),
-        raw_(memory + rows.m),
+        shares_(prior_shares),
+        raw_(memory),
         raw_sizes_(raw_ + rows.m),
         hessian_(raw_sizes_ + rows.m),
         techniques_(indices) {}
-
-  /// π[m], to be written before the first gradient where prior > 0.
-  PHIMIS_HOST_DEVICE double* prior_shares() noexcept { return shares_; }
 
   /// Adds price · Σ_k c_k a_k to the objective.
   PHIMIS_HOST_DEVICE void charge(double price, const Real* costs) noexcept {
@@ -250,7 +248,7 @@ class divergence_on_simplex {
   double price_ = 0;
   int every_ = 1;
   const Real* costs_ = nullptr;
-  double* shares_;
+  const double* shares_;
   double* raw_;
   double* raw_sizes_;
   double* hessian_;

@@ -17,6 +17,9 @@ namespace phimis {
 ///     J = C V,   C = Σ_k c_k a_k,   a_k = β_k/κ_k
 ///     V[ℱ] = ∫ f²/p − μ²,   V[F] = ∫ f²/p − Σ_k a_k μ'_k²,   μ'_k = ∫ f P_k/p,   P_k = κ_k p_k
 ///
+/// A prior adds prior · Σ_k π_k²/a_k to V.
+///
+///
 /// With r_k = ∫ f p_k/p and h = Σ_k β_k κ_k r_k p_k the derivatives of T = Σ a_k μ'_k² = Σ β_k κ_k r_k² are
 ///
 ///     T_j  = κ_j r_j² − 2 ∫ f h p_j/p²
@@ -30,10 +33,10 @@ class variance_on_simplex {
   static constexpr bool convex = false;
   PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 3 * m + 2 * (m + 1) * (m + 1); }
 
-  /// costs[m] or null where all are equal; mass: what sums are divided by to be means.
+  /// costs[m] or null where all are equal; mass: what sums are divided by to be means; π[m] in the coordinates a.
   PHIMIS_HOST_DEVICE variance_on_simplex(sampling_model model, const column_pointers<Real>& rows, floored_simplex& on,
-                                         const double* kappa, const Real* costs, double unit, double mass,
-                                         double* memory) noexcept
+                                         const double* kappa, const Real* costs, double unit, double mass, double prior,
+                                         const double* prior_shares, double* memory) noexcept
       : model_(model),
         rows_(rows),
         on_(on),
@@ -41,6 +44,8 @@ class variance_on_simplex {
         costs_(costs),
         unit_(unit),
         mass_(mass),
+        prior_(prior),
+        prior_shares_(prior_shares),
         slope_(memory),
         r_(memory + rows.m),
         shares_(r_ + rows.m),
@@ -74,6 +79,12 @@ class variance_on_simplex {
         slope_[k] -= y / at.x * at.f * at.t;  // of ∫ f²/p
         r_[k] += y / at.x * at.f;
       }
+    }
+    for (int k = 0; k < m; ++k) {
+      if (!has_prior(k)) continue;
+      const double t = prior_shares_[k] * kappa_[k] / beta[k];
+      second_ += prior_ * prior_shares_[k] * t;
+      slope_[k] -= prior_ * t * t / kappa_[k];
     }
     double squares = mean * mean;
     if (multi()) {
@@ -118,6 +129,9 @@ class variance_on_simplex {
     }
     for (int k = 0; k < m; ++k) {
       for (int l = 0; l < k; ++l) a[k * m + l] = a[l * m + k];
+      if (!has_prior(k)) continue;
+      const double t = prior_shares_[k] * kappa_[k] / beta[k];
+      gram_[k * m + k] += 2 * prior_ * t * t / (kappa_[k] * beta[k]);
     }
     for (int k = 0; k < m; ++k) {
       for (int l = k; l < m; ++l) {
@@ -169,6 +183,7 @@ class variance_on_simplex {
   PHIMIS_HOST_DEVICE double cost(int k) const noexcept {
     return (costs_ != nullptr ? static_cast<double>(costs_[k]) : 1) / kappa_[k];
   }
+  PHIMIS_HOST_DEVICE bool has_prior(int k) const noexcept { return prior_ > 0 && prior_shares_[k] > 0; }
   PHIMIS_HOST_DEVICE bool multi() const noexcept { return model_ == sampling_model::multi_sample; }
 
   sampling_model model_;
@@ -178,6 +193,8 @@ class variance_on_simplex {
   const Real* costs_;
   double unit_;
   double mass_;
+  double prior_;
+  const double* prior_shares_;
   double* slope_;   // of V in β
   double* r_;       // ∫ f p_k/p
   double* shares_;  // β_k κ_k r_k
