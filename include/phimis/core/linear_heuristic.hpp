@@ -85,12 +85,13 @@ class linear_heuristic : public rule_base<Real, M> {
       : rule_base<Real, M>(options) {}
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, M>& sample) {
-    PHIMIS_EXPECTS(sample.technique >= 0 && sample.technique < M);
+    const int k = sample.technique;
+    PHIMIS_EXPECTS(k >= 0 && k < M);
     row<Real, M> row;
     if (!this->admit(sample, row)) return;
     sums_.add(sample);
     if constexpr (Treatment == negative_fractions::project) memory_.projection.add(row);
-    if constexpr (Treatment == negative_fractions::best_face) keep(sample.technique, row);
+    if constexpr (Treatment == negative_fractions::best_face) keep(k, row);
   }
 
   PHIMIS_HOST_DEVICE rule_status update() noexcept {

@@ -21,8 +21,8 @@ class technique_sums {
  public:
   /// Requires what `to_row` admits, and a technique in 0..M−1.
   PHIMIS_HOST_DEVICE void add(const observation<Real, M>& sample) noexcept {
-    PHIMIS_EXPECTS(sample.technique >= 0 && sample.technique < M);
     const int k = sample.technique;
+    PHIMIS_EXPECTS(k >= 0 && k < M);
     Real density = 0;
     for (int i = 0; i < M; ++i) density += sample.pdfs[i];
     const Real f = sample.f < 0 ? -sample.f : sample.f;
