@@ -7,6 +7,7 @@
 #include <phimis/concepts.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/minimise_rows.hpp>
+#include <phimis/core/movable_techniques.hpp>
 #include <phimis/core/pair_sums.hpp>
 #include <phimis/core/solve_pair.hpp>
 #include <phimis/validate.hpp>
@@ -148,13 +149,20 @@ optimal_fractions<M> solve_on(const Divergence& divergence, const problem<M>& on
     return row_minimisation<Divergence, double>(divergence, pointers, largest, wanted, memory.data(), indices.data())
         .minimise(alpha.value);
   };
-  const bool is_signed = phimis::detail::is_variance<Divergence>::value;
+  constexpr bool is_signed = phimis::detail::is_variance<Divergence>::value;
   optimal_fractions<M> result{};
   const row_minimum found = solve(is_signed ? on.signed_rows() : on.rows(), result.alpha);
   result.residual = found.solution.residual;
   result.local = found.status == rule_status::local;
   fractions<double, M> embedded{};
-  solve(on.embedded_rows(), embedded);
+  const table<double, M> nodes = on.embedded_rows();
+  table<double, M> coarse;
+  for (std::ptrdiff_t j = 0; j < nodes.size(); ++j) {
+    row<double, M> row = nodes[j];
+    if (!is_signed) row.u = std::fabs(row.u);
+    coarse.push(row);
+  }
+  solve(coarse, embedded);
   result.error = 4 * epsilon<double>;
   for (int k = 0; k < M; ++k) result.error = std::max(result.error, std::fabs(embedded[k] - result.alpha[k]));
   return result;
@@ -176,6 +184,7 @@ measured divergence_between_kinks(const Divergence& divergence, const problem<2>
 /// at t = 1, or of more techniques, enlarge the error.
 ///
 /// Source T Eqs. 16, 18, 25, 27; V[F] by multi_sample_variance.
+/// Units  the prior in units of the integral: D(g, p(α)) + prior · D(π, α).
 /// Errors std::invalid_argument as `validate`; where a reversed divergence is infinite for every α.
 template <divergence Divergence, int M>
 optimal_fractions<M> optimum(
@@ -191,15 +200,14 @@ optimal_fractions<M> optimum(
     for (std::ptrdiff_t j = 0; j < rows.size(); ++j) zeros += rows[j].u > 0 ? 0 : 1;
     require(zeros == 0, "divergence", "is infinite where f = 0 < p; number of such nodes", zeros);
   }
+  // Nothing can move: the start is the best there is.
+  if (!movable_techniques<M>(options).any()) return {with_floors(options.start, options.floors), 0, 0, false};
   const auto solve = [&](const problem<M>& with, const fractions<double, M>& from) {
-    if constexpr (kinked && M == 2) {
-      return detail::solve_pair_on(divergence, with, options, from);
-    } else {
-      if constexpr (M == 2) {
-        if (options.costs[0] == options.costs[1]) return detail::solve_pair_on(divergence, with, options, from);
-      }
-      return detail::solve_on(divergence, with, options, from);
+    if constexpr (M == 2) {
+      const bool plain = options.costs[0] == options.costs[1] && !(options.prior > 0);
+      if (plain) return detail::solve_pair_on(divergence, with, options, from);
     }
+    return detail::solve_on(divergence, with, options, from);
   };
   optimal_fractions<M> result = solve(on, options.start);
   if (!kinked && result.error > 1e-12) {

@@ -131,7 +131,7 @@ class row_minimisation {
     } else {
       found = solve_convex();
     }
-    for (int k = 0; k < rows_.m; ++k) alpha[k] = wanted_.frozen[k] ? wanted_.start[k] : wanted_.from[k];
+    for (int k = 0; k < rows_.m; ++k) alpha[k] = fixed(k);
     simplex_.to_fractions(theta_, alpha);
     if (!(found.residual <= acceptable)) return {rule_status::not_converged, found};
     return {local ? rule_status::local : rule_status::updated, found};
@@ -155,7 +155,13 @@ class row_minimisation {
 
   /// Whether one technique takes what the floors of silent ones leave.
   PHIMIS_HOST_DEVICE bool alone() const noexcept {
-    return wanted_.silent == silent_technique::judged && simplex_.size() == 1;
+    return wanted_.silent == silent_technique::judged && simplex_.size() == 1 && simplex_.free() > 0;
+  }
+
+  /// The fraction of a technique that cannot move, the floor of another.
+  PHIMIS_HOST_DEVICE Real fixed(int k) const noexcept {
+    if (wanted_.frozen[k]) return wanted_.start[k];
+    return silent_[k] != 0 && wanted_.silent == silent_technique::kept ? wanted_.from[k] : wanted_.floors[k];
   }
 
   /// From masses to κ, the floors, and the centre of the prior.
@@ -167,11 +173,7 @@ class row_minimisation {
       if (!detail::is_variance<Divergence>::value) kappa_[k] /= static_cast<double>(wanted_.costs[k]);
     }
     simplex_.constrain([&](int k) { return wanted_.frozen[k] || silent_[k] != 0; },
-                       [&](int k) {
-                         if (wanted_.frozen[k]) return wanted_.start[k];
-                         const bool kept = silent_[k] != 0 && wanted_.silent == silent_technique::kept;
-                         return kept ? wanted_.from[k] : wanted_.floors[k];
-                       });
+                       [&](int k) { return fixed(k); });
     double sum = 0;
     for (int k = 0; k < rows_.m; ++k) sum += static_cast<double>(wanted_.start[k]) / kappa_[k];
     for (int k = 0; k < rows_.m; ++k) prior_shares_[k] = static_cast<double>(wanted_.start[k]) / kappa_[k] / sum;

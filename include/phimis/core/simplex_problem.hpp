@@ -48,6 +48,7 @@ class floored_simplex {
   }
 
   PHIMIS_HOST_DEVICE int size() const noexcept { return size_; }
+  PHIMIS_HOST_DEVICE double free() const noexcept { return free_; }
   PHIMIS_HOST_DEVICE bool has_freedom() const noexcept { return size_ > 1 && free_ > 0; }
   PHIMIS_HOST_DEVICE int technique(int i) const noexcept { return technique_[i]; }
   /// fixed[m], or null where all are 0.

@@ -4,6 +4,7 @@
 
 #include <phimis/concepts.hpp>
 #include <phimis/core/finite.hpp>
+#include <phimis/core/limits.hpp>
 #include <phimis/core/minimise_rows.hpp>
 #include <phimis/core/observation.hpp>
 #include <phimis/error.hpp>
@@ -77,24 +78,29 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
   require(pdfs.rows() == n, "pdfs", "must have a row for each of " + std::to_string(n) + " values of f", pdfs.rows());
   require(q.size() == n, "q", "must have an entry for each of " + std::to_string(n) + " values of f", q.size());
   require(n >= 1, "f", "must have at least one observation", n);
-  const Eigen::VectorXd start = detail::or_default(options.start, m, 1.0 / static_cast<double>(m), "start");
+  Eigen::VectorXd start = detail::or_default(options.start, m, 1.0 / static_cast<double>(m), "start");
   const Eigen::VectorXd floors = detail::or_default(options.floors, m, 0, "floors");
   const Eigen::VectorXd costs = detail::or_default(options.costs, m, 1, "costs");
-  validate(std::span(start.data(), static_cast<std::size_t>(m)),
-           std::span(floors.data(), static_cast<std::size_t>(m)),
-           std::span(costs.data(), static_cast<std::size_t>(m)), options.prior);
+  validate<double>(std::span(start.data(), static_cast<std::size_t>(m)),
+                   std::span(floors.data(), static_cast<std::size_t>(m)),
+                   std::span(costs.data(), static_cast<std::size_t>(m)), options.prior);
   validate_costs(divergence, std::span(costs.data(), static_cast<std::size_t>(m)));
   const auto frozen = std::make_unique<bool[]>(static_cast<std::size_t>(m));
   for (const int k : options.frozen) {
     require(k >= 0 && k < m, "frozen", "must be techniques from 0 to " + std::to_string(m - 1), k);
     frozen[static_cast<std::size_t>(k)] = true;
   }
-
-  minimum result{.fractions = start, .counters = {}};
-  const Eigen::VectorXd above = (start - floors).cwiseMax(0);
-  if (above.sum() > 0 && (start - floors).minCoeff() < 0) {
-    result.fractions = floors + (1 - floors.sum()) * above / above.sum();
+  Eigen::VectorXd least = floors;  // of each fraction; a frozen one has no floor
+  for (Eigen::Index k = 0; k < m; ++k) {
+    if (frozen[static_cast<std::size_t>(k)]) least[k] = start[k];
   }
+  require(least.sum() <= 1 + 8 * static_cast<double>(m) * epsilon<double>, "floors",
+          "must leave room for the frozen techniques", least.sum());
+  const Eigen::VectorXd above = (start - least).cwiseMax(0);
+  if (above.sum() > 0 && (start - least).minCoeff() < 0) {
+    start = least + std::max(1 - least.sum(), 0.0) * above / above.sum();
+  }
+  minimum result{.fractions = start, .counters = {}};
   Eigen::VectorXd u(n);
   Eigen::VectorXd w(n);
   Eigen::MatrixXd y(n, m);
