@@ -140,14 +140,16 @@ class mixture_block_sums {
   /// The |t| of the largest |s| among rows with u ≠ 0; 0 without any.
   PHIMIS_HOST_DEVICE double reference(bool largest) const noexcept {
     double found = 0;
-    for (std::ptrdiff_t j = 0; j < rows_.n; ++j) {
-      const Real u = rows_.u[j] < 0 ? -rows_.u[j] : rows_.u[j];
-      if (!(u > 0)) continue;
-      Real x[1];
-      mix<Real>(beta_, tiny, j, 1, x);
-      const double t = static_cast<double>(unit_ * u / x[0]);
-      if (!(found > 0) || (largest ? t > found : t < found)) found = t;
-    }
+    for_blocks([&](auto lane, std::ptrdiff_t first, int count) {
+      Real x[block_rows];
+      mix<decltype(lane)>(beta_, tiny, first, count, x);
+      for (int i = 0; i < count; ++i) {
+        const Real u = rows_.u[first + i] < 0 ? -rows_.u[first + i] : rows_.u[first + i];
+        if (!(u > 0)) continue;
+        const double t = static_cast<double>(unit_ * u / x[i]);
+        if (!(found > 0) || (largest ? t > found : t < found)) found = t;
+      }
+    });
     return found;
   }
 

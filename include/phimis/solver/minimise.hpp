@@ -104,22 +104,32 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
   Eigen::VectorXd u(n);
   Eigen::VectorXd w(n);
   Eigen::MatrixXd y(n, m);
-  Eigen::VectorXd of_one(m);
-  Eigen::VectorXd row(m);
   double largest = 0;
   Eigen::Index kept = 0;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    of_one = pdfs.row(j);
-    ++result.counters.observations;
-    if (!to_row(f[j], of_one.data(), static_cast<int>(m), q[j], u[kept], w[kept], row.data())) {
-      ++result.counters.nonfinite;
-      continue;
+  // By tiles of rows: a column at a time is read and written, a row at a time is looked at.
+  constexpr Eigen::Index tile = 64;
+  using by_row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  by_row given;
+  by_row taken(tile, m);
+  for (Eigen::Index first = 0; first < n; first += tile) {
+    const Eigen::Index rows = std::min(tile, n - first);
+    given = pdfs.middleRows(first, rows);
+    Eigen::Index good = 0;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const Eigen::Index j = first + i;
+      ++result.counters.observations;
+      if (!to_row(f[j], given.row(i).data(), static_cast<int>(m), q[j], u[kept + good], w[kept + good],
+                  taken.row(good).data())) {
+        ++result.counters.nonfinite;
+        continue;
+      }
+      double& of_row = u[kept + good++];
+      largest = std::max(largest, of_row);
+      if (!(of_row > 0)) ++result.counters.zero;
+      if (detail::is_variance<Divergence>::value && f[j] < 0) of_row = -of_row;
     }
-    y.row(kept) = row;
-    largest = std::max(largest, u[kept]);
-    if (!(u[kept] > 0)) ++result.counters.zero;
-    if (detail::is_variance<Divergence>::value && f[j] < 0) u[kept] = -u[kept];
-    ++kept;
+    y.middleRows(kept, good) = taken.topRows(good);
+    kept += good;
   }
   if (result.counters.zero > 0 && infinite_at_zero(divergence)) {
     result.status = rule_status::infinite_divergence;
