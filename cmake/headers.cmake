@@ -45,6 +45,7 @@ set(PHIMIS_CORE_HEADERS
 
 set(PHIMIS_UPPER_HEADERS
     phimis/analysis/allocation.hpp
+    phimis/analysis/joint_optimum.hpp
     phimis/analysis/optimum.hpp
     phimis/analysis/problem.hpp
     phimis/analysis/variance.hpp
@@ -53,10 +54,18 @@ set(PHIMIS_UPPER_HEADERS
     phimis/error.hpp
     phimis/estimator/batch.hpp
     phimis/estimator/combination.hpp
+    phimis/estimator/control_coefficients.hpp
+    phimis/estimator/control_fit.hpp
+    phimis/estimator/control_variates.hpp
+    phimis/estimator/optimal_mis.hpp
+    phimis/estimator/run_estimate.hpp
     phimis/integrate.hpp
     phimis/interval.hpp
     phimis/phimis.hpp
     phimis/quadrature/panels.hpp
+    phimis/solver/joint_minimiser.hpp
+    phimis/solver/joint_problem.hpp
+    phimis/solver/least_squares.hpp
     phimis/solver/minimise.hpp
     phimis/solver/rules.hpp
     phimis/solver/table.hpp

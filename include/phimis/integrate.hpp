@@ -9,17 +9,17 @@
 #include <phimis/error.hpp>
 #include <phimis/estimator/batch.hpp>
 #include <phimis/estimator/combination.hpp>
+#include <phimis/estimator/control_coefficients.hpp>
+#include <phimis/estimator/run_estimate.hpp>
 #include <phimis/solver/rules.hpp>
 #include <phimis/technique/technique_set.hpp>
 #include <phimis/validate.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <random>
-#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -73,6 +73,8 @@ struct integration {
   std::int64_t nonfinite = 0;  ///< contributions that were not finite: each counts as a sample of value 0
   phimis::fractions<double, M> fractions{};  ///< for the next iteration
   integration_status status = integration_status::complete;
+  /// The control variates of the estimate, or of the last iteration's; 0 without.
+  control_coefficients<Value, M> control{};
   std::vector<iteration<Value, M>> trace{};
   Rule rule;  ///< the state of the rule, to continue from
 };
@@ -90,7 +92,7 @@ struct heuristic_kind {
 };
 struct combination_kind {
   template <class T>
-  static constexpr bool is = combination<T> || std::same_as<T, pooled>;
+  static constexpr bool is = combination<T> || run_policy<T>;
 };
 struct source_kind {
   template <class T>
@@ -118,76 +120,6 @@ auto& pick(Default& otherwise, First& first, Rest&... rest) {
   } else {
     return pick<Kind>(otherwise, rest...);
   }
-}
-
-/// All samples of a run, for the pooled combination.
-template <class Value, int M>
-struct sample_pool {
-  std::vector<drawn_sample<Value, M>> samples;
-  per_technique<double, M> shares{};  // Σ_b n_b α_b
-
-  template <class Heuristic>
-  estimator<Value, M> combine(const Heuristic& heuristic) const {
-    per_technique<double, M> alpha = shares;
-    for (int k = 0; k < M; ++k) alpha[k] /= static_cast<double>(samples.size());
-    estimator<Value, M> all;
-    for (const auto& sample : samples) {
-      const int k = sample.observed.technique;
-      all.add(k, contribution(heuristic, k, sample.value, alpha, sample.observed.pdfs));
-    }
-    return all;
-  }
-};
-
-template <class Value>
-struct combined {
-  Value estimate;
-  Value standard_error;
-  double effective_sample_size;
-};
-
-/// F = Σ w_b F_b / Σ w_b, Var F = Σ w_b² Var F_b / (Σ w_b)², over the iterations of a trace. An iteration of one sample
-/// has the given spread.
-template <class Value, int M, combination Combination>
-combined<Value> combine(const Combination& combination, const std::vector<iteration<Value, M>>& trace,
-                        const Value& spread) {
-  using traits = value_traits<Value>;
-  using real = typename traits::real;
-  std::vector<iteration_summary> summaries;
-  std::vector<Value> errors;
-  double largest = 0;
-  for (const auto& it : trace) {
-    errors.push_back(it.samples > 1 ? it.standard_error : spread);
-    const double error = static_cast<double>(traits::magnitude(errors.back()));
-    summaries.push_back({it.samples, error, it.zero + it.nonfinite == it.samples});
-    largest = std::max(largest, error);
-  }
-  std::vector<double> weights(trace.size());
-  combination(std::span<const iteration_summary>(summaries), std::span<double>(weights));
-  double sum = 0;
-  for (const double w : weights) {
-    require(is_density(w), "a combination's weights", "must be finite and not negative", w);
-    sum += w;
-  }
-  require(sum > 0 && is_finite(sum), "a combination's weights", "must have a finite sum greater than 0", sum);
-
-  // Squares are taken in units of the largest.
-  const real unit = largest > 0 && is_finite(largest) ? static_cast<real>(largest) : real(1);
-  Value estimate = traits::zero();
-  Value variance = traits::zero();
-  double reached = 0;
-  double spent = 0;
-  for (std::size_t b = 0; b < trace.size(); ++b) {
-    const double share = weights[b] / sum;
-    if (!(share > 0)) continue;
-    estimate = estimate + trace[b].estimate * static_cast<real>(share);
-    const Value part = errors[b] * (static_cast<real>(share) / unit);
-    variance = variance + part * part;
-    if (!(trace[b].effective_sample_size > 0)) continue;
-    reached += share;
-    spent += share * share / trace[b].effective_sample_size;
-  }
-  return {estimate, traits::root(variance) * unit, spent > 0 ? reached * reached / spent : 0};
 }
 
 }  // namespace detail
@@ -269,11 +201,9 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
   if constexpr (requires { rule.divergence(); }) validate(rule.divergence());
   if constexpr (requires { rule.options(); }) validate(rule.options());
 
-  bool decided = true;  // every batch had the multi-sample variance
+  using combination_type = std::remove_cvref_t<decltype(combination)>;
   estimator<value, M> every_sample;
-  constexpr bool pool = std::is_same_v<std::remove_cvref_t<decltype(combination)>, pooled>;
-  detail::sample_pool<value, M> all;
-  estimator<value, M> pooled_estimator;
+  typename detail::run_of<value, M, combination_type>::type estimates(combination, options.model);
   integration<value, M, rule_type> result{.rule = rule};
 
   for (int i = 0; i < options.iterations; ++i) {
@@ -284,42 +214,34 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
     const auto drawn = draw_batch(f, techniques, alpha, {samples, options.model, options.rounding}, heuristic, next,
                                   [&](const drawn_sample<value, M>& sample) {
                                     result.rule.observe(sample.observed);
-                                    if constexpr (pool) all.samples.push_back(sample);
+                                    estimates.add(sample);
                                   });
+    const estimator<value, M> own = estimates.close(drawn);
     line now{.index = i,
              .fractions = alpha,
              .counts = drawn.counts,
              .samples = samples,
              .zero = drawn.estimator.zero(),
              .nonfinite = drawn.estimator.nonfinite(),
-             .estimate = drawn.estimator.estimate(),
-             .standard_error = drawn.estimator.standard_error(drawn.variance),
-             .effective_sample_size = static_cast<double>(drawn.estimator.effective_sample_size()),
+             .estimate = own.estimate(),
+             .standard_error = own.standard_error(drawn.variance),
+             .effective_sample_size = static_cast<double>(own.effective_sample_size()),
              .combined_estimate = value_traits<value>::zero(),
              .combined_standard_error = value_traits<value>::zero(),
              .status = result.rule.update()};
-    decided = decided && drawn.variance == sampling_model::multi_sample;
-    every_sample.merge(drawn.estimator);
+    every_sample.merge(own);
     result.trace.push_back(now);
     result.samples += samples;
     result.zero += now.zero;
     result.nonfinite += now.nonfinite;
-    if constexpr (pool) {
-      for (int k = 0; k < M; ++k) all.shares[k] += drawn.fractions[k] * static_cast<double>(samples);
-      pooled_estimator = all.combine(heuristic);
-      result.estimate = pooled_estimator.estimate();
-      result.standard_error =
-          pooled_estimator.standard_error(decided ? sampling_model::multi_sample : sampling_model::one_sample);
-      result.effective_sample_size = static_cast<double>(pooled_estimator.effective_sample_size());
-    } else {
-      // The spread of one sample is that of all.
-      const value spread = every_sample.standard_error(sampling_model::one_sample) *
-                           static_cast<typename value_traits<value>::real>(std::sqrt(result.samples));
-      const auto combined = detail::combine(combination, result.trace, spread);
-      result.estimate = combined.estimate;
-      result.standard_error = combined.standard_error;
-      result.effective_sample_size = combined.effective_sample_size;
-    }
+    // The spread of one sample is that of all.
+    const value spread = every_sample.standard_error(sampling_model::one_sample) *
+                         static_cast<typename value_traits<value>::real>(std::sqrt(result.samples));
+    const auto combined = estimates.total(heuristic, result.trace, spread);
+    result.estimate = combined.estimate;
+    result.standard_error = combined.standard_error;
+    result.effective_sample_size = combined.effective_sample_size;
+    result.control = estimates.control();
     if (result.zero + result.nonfinite == result.samples) result.standard_error = value_traits<value>::unknown();
     result.trace.back().combined_estimate = result.estimate;
     result.trace.back().combined_standard_error = result.standard_error;

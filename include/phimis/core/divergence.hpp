@@ -134,6 +134,13 @@ struct total_variation {
     const Real sine = rounded / distance;
     return {distance / 2, (t - 1) / distance / 2, sine * sine / distance / 2};
   }
+  /// t φ' − φ, which would cancel at large t.
+  template <class Real>
+  PHIMIS_HOST_DEVICE static score<Real> score_of(Real t, Real rounded = 0) noexcept {
+    const Real distance = std::hypot(t - 1, rounded);
+    if (!(distance > 0)) return {0, 0};
+    return {((t - 1) - rounded * rounded) / distance / 2, t * (t * taylor(t, rounded).second)};
+  }
 };
 
 /// Pearson–Vajda divergence of order k ≥ 1.  D(g, p) = ∫ |g − p|^k / p^{k−1} dx,  φ(t) = |t − 1|^k
@@ -154,6 +161,17 @@ struct pearson_vajda {
     const Real curvature = (order - 1) * cosine * cosine + sine * sine;
     return {std::pow(distance, order), cosine * order * std::pow(distance, order - 1),
             order * curvature * std::pow(distance, order - 2)};
+  }
+  /// t φ' − φ, which would cancel at large t.
+  template <class Real>
+  PHIMIS_HOST_DEVICE score<Real> score_of(Real t, Real rounded = 0) const noexcept {
+    const Real order = static_cast<Real>(k);
+    const Real distance = std::hypot(t - 1, rounded);
+    if (!(distance > 0)) return {0, 0};
+    const Real cosine = (t - 1) / distance;
+    const Real sine = rounded / distance;
+    return {std::pow(distance, order - 1) * (cosine * ((order - 1) * t + 1) - sine * rounded),
+            t * (t * taylor(t, rounded).second)};
   }
 };
 
@@ -192,6 +210,10 @@ struct rounded_off {
   template <class Real>
   PHIMIS_HOST_DEVICE phi_taylor<Real> taylor(Real t) const noexcept {
     return divergence.taylor(t, static_cast<Real>(width));
+  }
+  template <class Real>
+  PHIMIS_HOST_DEVICE score<Real> score_of(Real t) const noexcept {
+    return divergence.score_of(t, static_cast<Real>(width));
   }
 };
 
@@ -239,11 +261,20 @@ struct is_kinked<Divergence, std::enable_if_t<Divergence::kinked>> : std::true_t
 template <class Divergence>
 struct is_kinked<reversed<Divergence>> : is_kinked<Divergence> {};
 
+template <class Divergence, class = void>
+struct has_own_score : std::false_type {};
+template <class Divergence>
+struct has_own_score<Divergence, std::void_t<decltype(std::declval<const Divergence&>().score_of(1.0))>>
+    : std::true_type {};
+
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE score<Real> forward_score(const Divergence& divergence, Real t) noexcept {
+  if constexpr (has_own_score<Divergence>::value) {
+    if (t > 0) return divergence.score_of(t);
+  }
   const phi_taylor<Real> phi = divergence.taylor(t);
-  if (!(t > 0)) return {-phi.value, 0};  // t φ'(t) → 0 wherever φ(0) is finite
-  return {t * phi.first - phi.value, t * t * phi.second};
+  if (!(t > 0)) return {-phi.value, 0};                      // t φ'(t) → 0 wherever φ(0) is finite
+  return {t * phi.first - phi.value, t * (t * phi.second)};  // t² may be infinite where φ is flat
 }
 
 /// The slope of φ at infinity, which is −s(0) of the reversed divergence; infinite where it still grows over 14 decades.

@@ -16,6 +16,11 @@
 
 namespace phimis {
 
+namespace detail {
+template <class Value, int M>
+class pooled_estimate;  // in run_estimate.hpp
+}  // namespace detail
+
 /// What a combination may know of one iteration.
 struct iteration_summary {
   std::int64_t samples;
@@ -111,7 +116,10 @@ struct inverse_variance {
 ///
 /// **Consistent, not unbiased**: the fractions of later iterations depend on earlier samples. Needs every sample
 /// in memory, and a pass over all of them after each iteration.
-struct pooled {};
+struct pooled {
+  template <class Value, int M>
+  using run = detail::pooled_estimate<Value, M>;
+};
 
 }  // namespace phimis
 
