@@ -136,10 +136,10 @@ class simplex_newton {
       support_[size++] = k;
     }
     on_.hessian(support_, size, hessian_);
-    // No coordinate alone is to go further than the simplex is long: a nearly flat one would drown the others. Where it is
+    // No coordinate alone is to go a thousand times as far as the simplex is long: a nearly flat one would drown the others. Where it is
     // not convex, the diagonal may be negative while every edge of the simplex is curved.
     for (int a = 0; a < size && Problem::convex; ++a) {
-      const double least = std::fabs(excess_[a]);
+      const double least = 1e-3 * std::fabs(excess_[a]);
       if (hessian_[a * size + a] < least) hessian_[a * size + a] = least;
     }
     model_.keep(hessian_, size);
