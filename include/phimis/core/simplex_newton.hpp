@@ -70,6 +70,7 @@ class simplex_newton {
     simplex_solution now;
     if (!enter(theta, now)) return now;
     simplex_solution best;
+    for (int k = 0; k < m_; ++k) best_[k] = theta[k];
     int stale = 0;
     constexpr int most = 300;
     constexpr int most_evaluations = 1000;
