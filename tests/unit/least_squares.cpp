@@ -122,6 +122,24 @@ TEST_CASE("With fewer rows than columns the solution fits them all and is finite
   }
 }
 
+TEST_CASE("A column that is left out has no coefficient, and what it would have explained is left") {
+  const auto rows = random_rows<3>(40, {{1, 2, -1}}, 0.1, 9);
+  const auto found = regression<3>(rows).solve({{false, true, false}});
+  CHECK(found.rank == 2);
+  CHECK(found.beta[1] == 0);
+  double squares = 0;
+  double slope[2] = {};
+  for (const auto& row : rows) {
+    const double rest = row.y - found.beta[0] * row.x[0] - found.beta[2] * row.x[2];
+    squares += rest * rest;
+    slope[0] += rest * row.x[0];
+    slope[1] += rest * row.x[2];
+  }
+  CHECK(std::fabs(slope[0]) < 1e-12);
+  CHECK(std::fabs(slope[1]) < 1e-12);
+  CHECK(found.residual_norm == Approx(std::sqrt(squares)).epsilon(1e-12));
+}
+
 TEST_CASE("Without rows every coefficient is 0") {
   const auto found = least_squares<double, 3>().solve();
   CHECK(found.rank == 0);

@@ -95,6 +95,18 @@ TEST_CASE(
   CHECK(streamed.standard_error(sampling_model::multi_sample) == Approx(pooled.standard_error).epsilon(0.01));
 }
 
+TEST_CASE("The standard error of the direct form counts its coefficients") {
+  const auto samples = two_triangles::observe(bent, 0.5, 12, 12);
+  const auto sum = direct(samples, 0.5);
+  const auto control = sum.coefficients();
+  double squares = 0;
+  for (const auto& s : samples) {
+    const double rest = (s.f - control.beta[0] * s.pdfs[0] - control.beta[1] * s.pdfs[1]) / s.q;
+    squares += rest * rest;
+  }
+  CHECK(sum.standard_error(sampling_model::one_sample) == Approx(std::sqrt(squares / (12 * 10))).epsilon(1e-12));
+}
+
 TEST_CASE("Optimal weights sum to one, and weigh contributions into the estimate") {
   const double first = 0.3;
   const fractions<double, 2> alpha{{first, 1 - first}};
@@ -167,6 +179,9 @@ TEST_CASE("With too few samples, and after a lost one, Optimal MIS is the balanc
   lost.add(0, 0, {{0, 0}});
   CHECK(lost.coefficients().rank == 0);
   CHECK(lost.samples() == 41);
+  auto merged = direct(two_triangles::observe(bent, 0.5, 40, 8), 0.5);
+  merged.merge(lost);
+  CHECK(merged.coefficients().rank == 0);
 
   CHECK(optimal_mis<double, 2>().estimate() == 0);
   CHECK(optimal_mis<double, 2>().standard_error(sampling_model::multi_sample) == infinity);
