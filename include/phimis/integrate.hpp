@@ -69,6 +69,8 @@ struct integration {
   Value standard_error = value_traits<Value>::zero();
   double effective_sample_size = 0;  ///< of all samples as they were combined
   std::int64_t samples = 0;
+  double cost = 0;             ///< Σ n_k c_k with the costs of the rule; 1 a sample where it has none
+  double efficiency = 0;       ///< 1/(cost × variance), of a colour by its magnitude; 0 where the variance is unknown
   std::int64_t zero = 0;       ///< contributions that were 0
   std::int64_t nonfinite = 0;  ///< contributions that were not finite: each counts as a sample of value 0
   phimis::fractions<double, M> fractions{};  ///< for the next iteration
@@ -199,7 +201,12 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
                 "a callback of integrate() returns nothing or phimis::progress");
   validate(heuristic);
   if constexpr (requires { rule.divergence(); }) validate(rule.divergence());
-  if constexpr (requires { rule.options(); }) validate(rule.options());
+  per_technique<double, M> costs = equal_costs<double, M>();
+  if constexpr (requires { rule.options(); }) {
+    validate(rule.options());
+    costs = rule.options().costs;
+    if constexpr (requires { rule.divergence(); }) validate_costs<double>(rule.divergence(), costs.value);
+  }
 
   using combination_type = std::remove_cvref_t<decltype(combination)>;
   estimator<value, M> every_sample;
@@ -232,6 +239,7 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
     every_sample.merge(own);
     result.trace.push_back(now);
     result.samples += samples;
+    for (int k = 0; k < M; ++k) result.cost += static_cast<double>(drawn.counts[k]) * costs[k];
     result.zero += now.zero;
     result.nonfinite += now.nonfinite;
     // The spread of one sample is that of all.
@@ -252,6 +260,8 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
       break;
     }
   }
+  const double error = static_cast<double>(value_traits<value>::magnitude(result.standard_error));
+  result.efficiency = 1 / (result.cost * error * error);
   result.fractions = result.rule.fractions();
   if (result.zero + result.nonfinite == result.samples) result.status = integration_status::all_zero;
   return result;

@@ -51,27 +51,32 @@ void validate(const count_independent<Heuristic>& heuristic) {
   validate(heuristic.inner);
 }
 
-/// Start, floors and costs of as many techniques as they have entries.
+/// Start, floors, costs and frozen techniques, of as many techniques as they have entries.
 template <class Real>
-void validate(std::span<const Real> start, std::span<const Real> floors, std::span<const Real> costs, Real prior) {
+void validate(std::span<const Real> start, std::span<const Real> floors, std::span<const Real> costs,
+              std::span<const bool> frozen, Real prior) {
   const Real rounding = 8 * static_cast<Real>(start.size()) * std::numeric_limits<Real>::epsilon();
   Real least = 0;
+  Real bound = 0;
   Real all = 0;
   for (std::size_t k = 0; k < start.size(); ++k) {
     require(is_density(floors[k]), "floors", "must be finite and not negative", floors[k]);
     require(is_density(start[k]), "start", "must be finite and not negative", start[k]);
     require(is_density(costs[k]) && costs[k] > 0, "costs", "must be finite and greater than 0", costs[k]);
     least += floors[k];
+    bound += frozen[k] ? start[k] : floors[k];
     all += start[k];
   }
   require(least <= 1 + rounding, "floors", "must sum to at most 1", least);
   require(all >= 1 - rounding && all <= 1 + rounding, "start", "must sum to 1", all);
+  require(bound <= 1 + rounding, "floors", "must leave room for the frozen techniques", bound);
   require(is_density(prior), "prior", "must be finite and not negative", prior);
 }
 
 template <class Real, int M>
 void validate(const rule_options<Real, M>& options) {
-  validate<Real>(options.start.value, options.floors.value, options.costs.value, options.prior);
+  validate<Real>(options.start.value, options.floors.value, options.costs.value, options.frozen.value,
+                 options.prior);
 }
 
 /// Options of a rule that knows nothing of costs.
@@ -93,7 +98,7 @@ void validate_plain(const rule_options<Real, M>& options) {
 }
 
 /// Costs that are not all the same need an objective that a cost multiplies: a positive power of f/p, or a variance.
-template <class Divergence, class Real>
+template <class Real, class Divergence>
 void validate_costs(const Divergence& divergence, std::span<const Real> costs) {
   for (const Real cost : costs) {
     if constexpr (has_exponent<Divergence>::value) {

@@ -232,3 +232,14 @@ TEST_CASE("The optimum of a divergence that is infinite for every mixture does n
   refuses([&] { phimis::analysis::optimum(phimis::tsallis{-1}, gap); }, "gamma", "must be finite and greater than 0",
           "-1");
 }
+
+TEST_CASE("floors must leave room for the frozen techniques") {
+  rule_options<double, 2> options{.start = {{0.75, 0.25}}, .floors = {{0, 0.5}}};
+  options.frozen[0] = true;
+  no_rule_takes(options, "floors", "must leave room for the frozen techniques", "1.25");
+}
+
+TEST_CASE("integrate refuses costs of a rule built by hand whose divergence knows nothing of costs") {
+  using rule = phimis::exact_minimiser<phimis::total_variation, phimis::table<double, 2>>;
+  refuses([] { run({}, rule(phimis::total_variation{}, {.costs = {{1, 2}}})); }, "costs", "must be equal", "2");
+}

@@ -452,3 +452,23 @@ TEST_CASE("A batch draws each technique as often as it counts and hands over eve
   for (int k = 0; k < 3; ++k) CHECK(drawn[k] == batch.counts[k]);
   CHECK(batch.estimator.estimate() == Approx(sum / 20).epsilon(1e-14));
 }
+
+TEST_CASE("Cost counts every sample at its price, efficiency is 1/(cost × variance)") {
+  const auto plain = phimis::integrate(f, three, {.budget = 90, .iterations = 3}, phimis::fixed_rule<3>());
+  CHECK(plain.cost == 90);
+  CHECK(plain.efficiency == Approx(1 / (90 * plain.standard_error * plain.standard_error)));
+  const auto priced = phimis::integrate(f, three, {.budget = 90, .iterations = 3},
+                                        phimis::fixed_rule<3>({.costs = {{1, 2, 6}}}));
+  CHECK(priced.cost == 30 * (1 + 2 + 6));
+  CHECK(priced.estimate == plain.estimate);
+  CHECK(priced.efficiency == Approx(plain.efficiency / 3));
+  const auto zero = phimis::integrate([](double) { return 0.0; }, three, {.budget = 9, .iterations = 3});
+  CHECK(zero.efficiency == 0);  // nothing is known of the variance
+  const auto learnt = phimis::integrate(f, three, {.budget = 90, .iterations = 3},
+                                        phimis::exact_rule<3>(phimis::one_sample_variance{}, {.costs = {{1, 2, 6}}}));
+  double cost = 0;
+  for (const auto& it : learnt.trace) {
+    cost += static_cast<double>(it.counts[0] + 2 * it.counts[1] + 6 * it.counts[2]);
+  }
+  CHECK(learnt.cost == cost);
+}

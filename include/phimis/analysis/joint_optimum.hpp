@@ -88,7 +88,7 @@ controlled<M> joint_optimum(const problem<M>& on,
   double largest = 0;
   for (std::ptrdiff_t j = 0; j < rows.size(); ++j) largest = std::max(largest, std::fabs(rows[j].u));
   const joint_minimum<M> found = minimise_jointly<M>(
-      rows.view(), largest, options, with_floors(options.start, options.floors), control_variate::off);
+      rows.view(), largest, options, share_budget(options.start, options), control_variate::off);
   if (found.status == rule_status::no_information) return best_control_variates(on, found.alpha);
   return {found.alpha, found.beta, detail::residual_variance(on, found.alpha, found.beta), found.solution.residual};
 }

@@ -129,7 +129,7 @@ double score_of_all(const Divergence& divergence, const problem<M>& on, double f
 template <class Divergence, int M>
 optimal_fractions<M> solve_on(const Divergence& divergence, const problem<M>& on,
                               const rule_options<double, M>& options, const fractions<double, M>& from) {
-  const fractions<double, M> start = with_floors(from, options.floors);
+  const fractions<double, M> start = share_budget(from, options);
   const auto solve = [&](const table<double, M>& rows, fractions<double, M>& alpha) {
     const columns<double, M> view = rows.view();
     const column_pointers<double> pointers{view.u, view.w, view.y, view.n, M};
@@ -192,7 +192,7 @@ optimal_fractions<M> optimum(
     const std::type_identity_t<rule_options<double, M>>& options = without_floors<double, M>()) {
   validate(divergence);
   validate(options);
-  validate_costs<Divergence, double>(divergence, options.costs.value);
+  validate_costs<double>(divergence, options.costs.value);
   constexpr bool kinked = phimis::detail::is_kinked<Divergence>::value;
   if (infinite_at_zero(divergence)) {
     const table<double, M> rows = on.rows();
@@ -201,7 +201,7 @@ optimal_fractions<M> optimum(
     require(zeros == 0, "divergence", "is infinite where f = 0 < p; number of such nodes", zeros);
   }
   // Nothing can move: the start is the best there is.
-  if (!movable_techniques<M>(options).any()) return {with_floors(options.start, options.floors), 0, 0, false};
+  if (!movable_techniques<M>(options).any()) return {share_budget(options.start, options), 0, 0, false};
   const auto solve = [&](const problem<M>& with, const fractions<double, M>& from) {
     if constexpr (M == 2) {
       const bool plain = options.costs[0] == options.costs[1] && !(options.prior > 0);

@@ -90,7 +90,7 @@ class newton_raphson : public rule_base<Real, 2> {
       if (!(options.start[k] > 0)) continue;
       if (!(alpha[k] > 0)) {
         // An end is infinitely far from the prior: go back to where it is.
-        alpha = with_floors(options.start, options.floors);
+        alpha = share_budget(options.start, options);
         return this->status_ = rule_status::updated;
       }
       const Real mean = batch.f / static_cast<Real>(batch.n);

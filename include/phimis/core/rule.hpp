@@ -55,8 +55,9 @@ PHIMIS_HOST_DEVICE constexpr per_technique<Real, M> equal_costs() noexcept {
 
 /// What every rule takes: where to start, what to keep, how much to trust the start, what a sample costs.
 ///
-/// Requires start on the simplex; floors_k >= 0, Σ floors <= 1; prior >= 0; costs_k > 0. A start below a floor is raised
-/// to it. A rule that knows nothing of costs, or of frozen techniques, says so.
+/// Requires start on the simplex; floors_k >= 0, Σ floors <= 1, of frozen techniques the start in place of the floor;
+///          prior >= 0; costs_k > 0. A start below a floor is raised to it. A rule that knows nothing of costs, or of
+///          frozen techniques, says so.
 template <class Real, int M>
 struct rule_options {
   fractions<Real, M> start = equal_fractions<Real, M>();
@@ -68,7 +69,7 @@ struct rule_options {
   Real prior = 0;
   /// What a sample of each technique costs, in any unit: cost-aware rules minimise Σ c_k α_k times what they minimise.
   per_technique<Real, M> costs = equal_costs<Real, M>();
-  /// Techniques whose fraction stays at the start.
+  /// Techniques whose fraction stays at the start, whatever their floor.
   per_technique<bool, M> frozen{};
 };
 
@@ -80,6 +81,37 @@ PHIMIS_HOST_DEVICE constexpr rule_options<Real, M> without_floors() noexcept {
   return options;
 }
 
+/// Fractions in proportion to shares, none below its floor; those that are frozen stay at the start, whatever their floor.
+///
+/// Requires shares_k >= 0 and finite. Where every share is 0, the budget above the frozen ones is shared equally.
+template <class Real, int M>
+PHIMIS_HOST_DEVICE fractions<Real, M> share_budget(const per_technique<Real, M>& shares,
+                                                   const rule_options<Real, M>& options) noexcept {
+  per_technique<Real, M> free = shares;
+  per_technique<Real, M> floors = options.floors;
+  Real total = 0;
+  Real left = 1;
+  int movable = 0;
+  for (int k = 0; k < M; ++k) {
+    if (options.frozen[k]) {
+      left -= options.start[k];
+    } else {
+      total += shares[k];
+      ++movable;
+    }
+  }
+  if (movable == M) return with_floors(shares, options.floors);
+  if (movable == 0 || !(left > 0)) return options.start;
+  // The same problem on what is left of the budget.
+  for (int k = 0; k < M; ++k) {
+    free[k] = options.frozen[k] ? Real(0) : total > 0 ? shares[k] : Real(1);
+    floors[k] = options.frozen[k] ? Real(0) : options.floors[k] / left;
+  }
+  fractions<Real, M> alpha = with_floors(free, floors);
+  for (int k = 0; k < M; ++k) alpha[k] = options.frozen[k] ? options.start[k] : alpha[k] * left;
+  return alpha;
+}
+
 /// What every rule has: its options, its fractions, the status of its last update, its counters.
 template <class Real, int M>
 class rule_base {
@@ -88,7 +120,7 @@ class rule_base {
   using real = Real;
 
   PHIMIS_HOST_DEVICE explicit rule_base(const rule_options<Real, M>& options) noexcept
-      : options_(options), fractions_(with_floors(options.start, options.floors)) {}
+      : options_(options), fractions_(share_budget(options.start, options)) {}
 
   PHIMIS_HOST_DEVICE const rule_options<Real, M>& options() const noexcept { return options_; }
   PHIMIS_HOST_DEVICE const phimis::fractions<Real, M>& fractions() const noexcept { return fractions_; }

@@ -146,7 +146,7 @@ class second_order : public rule_base<Real, M> {
     double map_memory[floored_simplex::doubles(M)];
     int coordinates[M];
     floored_simplex on(M, kappa, map_memory, coordinates);
-    const auto from = with_floors(options.start, options.floors);
+    const auto from = share_budget(options.start, options);
     on.constrain([&](int k) { return options.frozen[k]; },
                  [&](int k) { return options.frozen[k] ? from[k] : options.floors[k]; });
     this->fractions_ = from;

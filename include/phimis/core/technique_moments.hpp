@@ -88,36 +88,6 @@ class technique_moments {
   bool any_ = false;
 };
 
-/// Fractions in proportion to shares, none below its floor; those that are frozen stay at the start.
-///
-/// Requires shares_k >= 0 and finite. Where every share is 0, the budget above the frozen ones is shared equally.
-template <class Real, int M>
-PHIMIS_HOST_DEVICE fractions<Real, M> share_budget(const per_technique<Real, M>& shares,
-                                                   const rule_options<Real, M>& options) noexcept {
-  const fractions<Real, M> start = with_floors(options.start, options.floors);
-  per_technique<Real, M> free = shares;
-  per_technique<Real, M> floors = options.floors;
-  Real kept = 0;
-  int unbound = M;
-  for (int k = 0; k < M; ++k) {
-    if (!options.frozen[k]) continue;
-    kept += start[k];
-    --unbound;
-  }
-  if (unbound == M) return with_floors(shares, options.floors);
-  if (unbound == 0 || !(kept < 1)) return start;
-  // The same problem on what is left of the budget.
-  Real total = 0;
-  for (int k = 0; k < M; ++k) total += options.frozen[k] ? Real(0) : shares[k];
-  for (int k = 0; k < M; ++k) {
-    free[k] = options.frozen[k] ? Real(0) : total > 0 ? shares[k] : Real(1);
-    floors[k] = options.frozen[k] ? Real(0) : options.floors[k] / (1 - kept);
-  }
-  fractions<Real, M> alpha = with_floors(free, floors);
-  for (int k = 0; k < M; ++k) alpha[k] = options.frozen[k] ? start[k] : alpha[k] * (1 - kept);
-  return alpha;
-}
-
 }  // namespace phimis
 
 #endif  // PHIMIS_CORE_TECHNIQUE_MOMENTS_HPP

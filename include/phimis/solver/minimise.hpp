@@ -81,21 +81,19 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
   Eigen::VectorXd start = detail::or_default(options.start, m, 1.0 / static_cast<double>(m), "start");
   const Eigen::VectorXd floors = detail::or_default(options.floors, m, 0, "floors");
   const Eigen::VectorXd costs = detail::or_default(options.costs, m, 1, "costs");
-  validate<double>(std::span(start.data(), static_cast<std::size_t>(m)),
-                   std::span(floors.data(), static_cast<std::size_t>(m)),
-                   std::span(costs.data(), static_cast<std::size_t>(m)), options.prior);
-  validate_costs(divergence, std::span(costs.data(), static_cast<std::size_t>(m)));
-  const auto frozen = std::make_unique<bool[]>(static_cast<std::size_t>(m));
+  const auto count = static_cast<std::size_t>(m);
+  const auto frozen = std::make_unique<bool[]>(count);
   for (const int k : options.frozen) {
     require(k >= 0 && k < m, "frozen", "must be techniques from 0 to " + std::to_string(m - 1), k);
     frozen[static_cast<std::size_t>(k)] = true;
   }
+  validate<double>(std::span(start.data(), count), std::span(floors.data(), count), std::span(costs.data(), count),
+                   std::span(frozen.get(), count), options.prior);
+  validate_costs<double>(divergence, std::span(costs.data(), count));
   Eigen::VectorXd least = floors;  // of each fraction; a frozen one has no floor
   for (Eigen::Index k = 0; k < m; ++k) {
     if (frozen[static_cast<std::size_t>(k)]) least[k] = start[k];
   }
-  require(least.sum() <= 1 + 8 * static_cast<double>(m) * epsilon<double>, "floors",
-          "must leave room for the frozen techniques", least.sum());
   const Eigen::VectorXd above = (start - least).cwiseMax(0);
   if (above.sum() > 0 && (start - least).minCoeff() < 0) {
     start = least + std::max(1 - least.sum(), 0.0) * above / above.sum();

@@ -47,7 +47,7 @@ exact_minimiser<Divergence, table<Real, M>> exact_rule(const Divergence& diverge
                                                        control_variate variate = control_variate::on) {
   validate(divergence);
   validate(options);
-  validate_costs<Divergence, Real>(divergence, options.costs.value);
+  validate_costs<Real>(divergence, options.costs.value);
   return exact_minimiser<Divergence, table<Real, M>>(divergence, options, variate);
 }
 template <divergence Divergence, class Real = double>

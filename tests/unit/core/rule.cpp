@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 // What every rule does with its options, its counters and bad observations.
 #include "catch.hpp"
+#include "three_powers.hpp"
 #include "two_triangles.hpp"
 
 #include <phimis/core/exact_minimiser.hpp>
+#include <phimis/core/inverse_variance_fractions.hpp>
+#include <phimis/core/linear_heuristic.hpp>
 #include <phimis/core/newton_raphson.hpp>
 #include <phimis/core/rule.hpp>
+#include <phimis/core/second_order.hpp>
+#include <phimis/core/sigma_proportional.hpp>
 
 #include <cmath>
 #include <limits>
@@ -217,4 +222,35 @@ TEST_CASE("The rule that learns nothing learns nothing") {
   rule.observe({1, {{1, 2, 3}}, 1, 0});
   CHECK(rule.update() == rule_status::start);
   CHECK(rule.fractions()[2] == 0.5);
+}
+
+namespace {
+template <class Real>
+using minimiser_of_three = phimis::exact_minimiser<phimis::chi_squared, phimis::fixed_table<Real, 3, 96>>;
+}  // namespace
+
+TEMPLATE_TEST_CASE("A frozen technique keeps its start even below its floor, the others keep theirs", "",
+                   (phimis::linear_heuristic<double, 3>), (phimis::second_order<double, 3>),
+                   (phimis::sigma_proportional<double, 3, phimis::balance>),
+                   (phimis::inverse_variance_fractions<double, 3>), minimiser_of_three<double>) {
+  rule_options<double, 3> options;
+  options.start = {{0.05, 0, 0.95}};
+  options.floors = {{0.1, 0.1, 0.1}};
+  options.frozen[0] = true;
+  TestType rule = [&] {
+    if constexpr (std::is_same_v<TestType, minimiser_of_three<double>>) {
+      return TestType({}, options);
+    } else {
+      return TestType(options);
+    }
+  }();
+  CHECK(rule.fractions()[0] == 0.05);
+  CHECK(rule.fractions()[1] == Approx(0.1));
+  CHECK(rule.fractions()[2] == Approx(0.85));
+  for (const auto& o : three_powers::tabulate([](double x) { return 0.1 + x * x * x; }, 32)) rule.observe(o);
+  rule.update();
+  CHECK(rule.fractions()[0] == 0.05);
+  CHECK(rule.fractions()[1] >= 0.1 * (1 - 1e-15));
+  CHECK(rule.fractions()[2] >= 0.1 * (1 - 1e-15));
+  CHECK(rule.fractions()[1] + rule.fractions()[2] == Approx(0.95).epsilon(1e-14));
 }
