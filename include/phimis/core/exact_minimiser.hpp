@@ -13,6 +13,20 @@
 
 namespace phimis {
 
+namespace detail {
+
+template <class Table>
+struct minimiser_memory {
+  Table table{};
+  typename Table::real largest = 0;  // |u|
+  bool zeros = false;
+  int evaluations = 0;
+  double residual = 0;
+  double gap = 0;
+};
+
+}  // namespace detail
+
 /// The fractions that minimise a divergence on all observations ever made, solved to a KKT certificate.
 ///
 ///     min_α Σ_j (p_j/q_j) φ(g_j/p_j) + prior · D(π, α),   α_k ≥ floor_k,   Σ α_k = 1
@@ -26,7 +40,7 @@ namespace phimis {
 ///
 /// Source T Eqs. 16, 18, 25; costs as in `row_minimisation`.
 template <class Divergence, class Table>
-class exact_minimiser : public rule_base<typename Table::real, Table::techniques> {
+class exact_minimiser : public rule_base<typename Table::real, Table::techniques, detail::minimiser_memory<Table>> {
   static_assert(Table::techniques >= 2, "exact_minimiser needs two techniques to choose from");
 
  public:
@@ -36,13 +50,13 @@ class exact_minimiser : public rule_base<typename Table::real, Table::techniques
   PHIMIS_HOST_DEVICE exact_minimiser() noexcept : exact_minimiser(Divergence{}) {}
   PHIMIS_HOST_DEVICE explicit exact_minimiser(const Divergence& divergence, const rule_options<Real, M>& options = {},
                                               phimis::control_variate variate = control_variate::on) noexcept
-      : rule_base<Real, M>(options), divergence_(divergence), variate_(variate) {}
+      : rule_base<Real, M, detail::minimiser_memory<Table>>(options), divergence_(divergence), variate_(variate) {}
 
   PHIMIS_HOST_DEVICE const Divergence& divergence() const noexcept { return divergence_; }
-  PHIMIS_HOST_DEVICE const Table& table() const noexcept { return table_; }
-  PHIMIS_HOST_DEVICE double residual() const noexcept { return residual_; }
-  PHIMIS_HOST_DEVICE double gap() const noexcept { return gap_; }
-  PHIMIS_HOST_DEVICE int evaluations() const noexcept { return evaluations_; }
+  PHIMIS_HOST_DEVICE const Table& table() const noexcept { return this->memory().table; }
+  PHIMIS_HOST_DEVICE double residual() const noexcept { return this->memory().residual; }
+  PHIMIS_HOST_DEVICE double gap() const noexcept { return this->memory().gap; }
+  PHIMIS_HOST_DEVICE int evaluations() const noexcept { return this->memory().evaluations; }
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, M>& sample) {
     row<Real, M> row;
@@ -52,12 +66,12 @@ class exact_minimiser : public rule_base<typename Table::real, Table::techniques
   }
 
   PHIMIS_HOST_DEVICE rule_status update() noexcept {
-    if (zeros_ && infinite_at_zero(divergence_)) {
-      return this->status_ = rule_status::infinite_divergence;
+    if (this->memory().zeros && infinite_at_zero(divergence_)) {
+      return this->end(rule_status::infinite_divergence);
     }
-    if (!(largest_ > 0)) return this->status_ = rule_status::no_information;
+    if (!(this->memory().largest > 0)) return this->end(rule_status::no_information);
     const auto& options = this->options_;
-    const phimis::fractions<Real, M> from = this->fractions_;
+    const phimis::fractions<Real, M> from = this->state_.fractions;
     minimisation<Real> wanted{};
     wanted.start = options.start.value;
     wanted.from = from.value;
@@ -69,55 +83,49 @@ class exact_minimiser : public rule_base<typename Table::real, Table::techniques
     wanted.silent = silent_technique::kept;
     const row_minimum found = minimise(wanted);
     if (found.status != rule_status::no_information) {
-      residual_ = found.solution.residual;
-      gap_ = found.solution.gap;
-      evaluations_ = found.solution.evaluations;
+      this->memory().residual = found.solution.residual;
+      this->memory().gap = found.solution.gap;
+      this->memory().evaluations = found.solution.evaluations;
     }
-    return this->status_ = found.status;
+    return this->end(found.status);
   }
 
   /// Adds the observations of another state; fractions stay until the next update.
   PHIMIS_HOST_DEVICE void merge(const exact_minimiser& other) {
-    this->counters_.merge(other.counters_);
-    const std::ptrdiff_t theirs = other.table_.size();  // `other` may be this
-    for (std::ptrdiff_t j = 0; j < theirs; ++j) keep(other.table_[j]);
+    this->state_.counters.merge(other.state_.counters);
+    const std::ptrdiff_t theirs = other.memory().table.size();  // `other` may be this
+    for (std::ptrdiff_t j = 0; j < theirs; ++j) keep(other.memory().table[j]);
   }
 
  private:
   PHIMIS_HOST_DEVICE void keep(const row<Real, M>& row) {
-    if (!table_.push(row)) {
-      ++this->counters_.dropped;
+    if (!this->memory().table.push(row)) {
+      ++this->state_.counters.dropped;
       return;
     }
     const Real size = row.u < 0 ? -row.u : row.u;
-    if (size > largest_) largest_ = size;
-    if (!(size > 0)) zeros_ = true;
+    if (size > this->memory().largest) this->memory().largest = size;
+    if (!(size > 0)) this->memory().zeros = true;
   }
 
   PHIMIS_HOST_DEVICE row_minimum minimise(const minimisation<Real>& wanted) noexcept {
-    const columns<Real, M> rows = table_.view();
+    const columns<Real, M> rows = this->memory().table.view();
     if constexpr (M == 2) {
       const bool priced = detail::is_variance<Divergence>::value && wanted.costs[0] != wanted.costs[1];
       if (!priced) {
-        return pair_minimisation<Divergence, Real>(divergence_, rows, largest_, wanted)
-            .minimise(this->fractions_.value);
+        return pair_minimisation<Divergence, Real>(divergence_, rows, this->memory().largest, wanted)
+            .minimise(this->state_.fractions.value);
       }
     }
     double memory[minimise_doubles<Divergence>(M)];
     int indices[minimise_indices(M)];
     const column_pointers<Real> pointers{rows.u, rows.w, rows.y, rows.n, M};
-    return row_minimisation<Divergence, Real>(divergence_, pointers, largest_, wanted, memory, indices)
-        .minimise(this->fractions_.value);
+    return row_minimisation<Divergence, Real>(divergence_, pointers, this->memory().largest, wanted, memory, indices)
+        .minimise(this->state_.fractions.value);
   }
 
   Divergence divergence_;
   phimis::control_variate variate_;
-  Table table_{};
-  Real largest_ = 0;  // |u|
-  bool zeros_ = false;
-  double residual_ = 0;
-  double gap_ = 0;
-  int evaluations_ = 0;
 };
 
 }  // namespace phimis

@@ -23,11 +23,11 @@ namespace phimis {
 ///   where V[G_i] is infinite against the least. Techniques without variance share all, by 1/c_i.
 /// - The prior, of which the source knows nothing, is a mean: (n · learnt + prior · start) / (n + prior).
 template <class Real, int M>
-class inverse_variance_fractions : public rule_base<Real, M> {
+class inverse_variance_fractions : public rule_base<Real, M, technique_moments<Real, M>> {
  public:
   PHIMIS_HOST_DEVICE inverse_variance_fractions() noexcept : inverse_variance_fractions(rule_options<Real, M>{}) {}
   PHIMIS_HOST_DEVICE explicit inverse_variance_fractions(const rule_options<Real, M>& options) noexcept
-      : rule_base<Real, M>(options) {}
+      : rule_base<Real, M, technique_moments<Real, M>>(options) {}
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, M>& sample) noexcept {
     const int i = sample.technique;
@@ -36,11 +36,11 @@ class inverse_variance_fractions : public rule_base<Real, M> {
     if (!this->admit(sample, row)) return;
     Real value = row.u > 0 ? row.u / row.y[i] : Real(0);
     if (!is_finite(value)) {  // p_i = 0 at its own sample
-      ++this->counters_.nonfinite;
+      ++this->state_.counters.nonfinite;
       return;
     }
     if (sample.f < 0) value = -value;
-    moments_.add(i, value);
+    this->memory().add(i, value);
   }
 
   PHIMIS_HOST_DEVICE rule_status update() noexcept {
@@ -49,37 +49,35 @@ class inverse_variance_fractions : public rule_base<Real, M> {
     Real least = 0;  // σ, of those that are not 0
     for (int k = 0; k < M; ++k) {
       if (!known(k)) continue;
-      const Real sigma = moments_.deviation(k);
+      const Real sigma = this->memory().deviation(k);
       if (!(sigma > 0)) exact = true;
       if (sigma > 0 && (!(least > 0) || sigma < least)) least = sigma;
     }
-    if (!exact && !(least > 0)) return this->status_ = rule_status::no_information;
+    if (!exact && !(least > 0)) return this->end(rule_status::no_information);
     per_technique<Real, M> shares{};
     Real total = 0;
     for (int k = 0; k < M; ++k) {
-      const Real sigma = known(k) ? moments_.deviation(k) : Real(-1);
+      const Real sigma = known(k) ? this->memory().deviation(k) : Real(-1);
       const Real ratio = sigma > 0 ? least / sigma : Real(0);
       shares[k] = (exact ? Real(sigma == 0 ? 1 : 0) : ratio * ratio) / options.costs[k];
       total += shares[k];
     }
-    const Real n = static_cast<Real>(moments_.count());
+    const Real n = static_cast<Real>(this->memory().count());
     for (int k = 0; k < M; ++k) {
       shares[k] = (n * (shares[k] / total) + options.prior * options.start[k]) / (n + options.prior);
     }
-    this->fractions_ = share_budget(shares, options);
-    return this->status_ = rule_status::updated;
+    this->state_.fractions = share_budget(shares, options);
+    return this->end(rule_status::updated);
   }
 
   /// Adds what another state has observed.
   PHIMIS_HOST_DEVICE void merge(const inverse_variance_fractions& other) noexcept {
-    this->counters_.merge(other.counters_);
-    moments_.merge(other.moments_);
+    this->state_.counters.merge(other.state_.counters);
+    this->memory().merge(other.memory());
   }
 
  private:
-  PHIMIS_HOST_DEVICE bool known(int k) const noexcept { return moments_.known(k) && moments_.any(k); }
-
-  technique_moments<Real, M> moments_{};
+  PHIMIS_HOST_DEVICE bool known(int k) const noexcept { return this->memory().known(k) && this->memory().any(k); }
 };
 
 }  // namespace phimis

@@ -36,16 +36,20 @@ struct no_table {};
 
 namespace detail {
 
-/// What a treatment keeps beside the sums of the equations.
+/// What a treatment keeps: the sums of the equations, and more for some.
 template <class Real, int M, negative_fractions Treatment, class Table>
-struct linear_memory {};
+struct linear_memory {
+  technique_sums<Real, M> sums;
+};
 template <class Real, int M>
 struct linear_memory<Real, M, negative_fractions::project, no_table> {
+  technique_sums<Real, M> sums;
   projection_sums<Real, M> projection;
 };
 template <class Real, int M, class Table>
 struct linear_memory<Real, M, negative_fractions::best_face, Table> {
   static_assert(Table::techniques == M, "best_face keeps samples: it needs a table of as many techniques");
+  technique_sums<Real, M> sums;
   Table samples[M];  // of each technique
   Real largest = 0;  // u
 };
@@ -74,7 +78,9 @@ struct linear_memory<Real, M, negative_fractions::best_face, Table> {
 /// - The equations depend on the parametrisation of x, as L2 does; the fit of `project` does not.
 /// - The prior adds prior/n · P_kk (α_k − π_k) to equation k.
 template <class Real, int M, negative_fractions Treatment = negative_fractions::project, class Table = no_table>
-class linear_heuristic : public rule_base<Real, M> {
+class linear_heuristic : public rule_base<Real, M, detail::linear_memory<Real, M, Treatment, Table>> {
+  using memory_type = detail::linear_memory<Real, M, Treatment, Table>;
+
   static_assert((Treatment == negative_fractions::best_face) != std::is_same<Table, no_table>::value,
                 "best_face needs a table of samples, the other treatments take none");
   static_assert(M <= 30, "faces are counted in the bits of an int");
@@ -82,15 +88,15 @@ class linear_heuristic : public rule_base<Real, M> {
  public:
   PHIMIS_HOST_DEVICE linear_heuristic() noexcept : linear_heuristic(rule_options<Real, M>{}) {}
   PHIMIS_HOST_DEVICE explicit linear_heuristic(const rule_options<Real, M>& options) noexcept
-      : rule_base<Real, M>(options) {}
+      : rule_base<Real, M, memory_type>(options) {}
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, M>& sample) {
     const int k = sample.technique;
     PHIMIS_EXPECTS(k >= 0 && k < M);
     row<Real, M> row;
     if (!this->admit(sample, row)) return;
-    sums_.add(sample);
-    if constexpr (Treatment == negative_fractions::project) memory_.projection.add(row);
+    this->memory().sums.add(sample);
+    if constexpr (Treatment == negative_fractions::project) this->memory().projection.add(row);
     if constexpr (Treatment == negative_fractions::best_face) keep(k, row);
   }
 
@@ -99,7 +105,7 @@ class linear_heuristic : public rule_base<Real, M> {
     const linear_equations<M> equations = equations_of_sums();
     double total = 0;
     for (int k = 0; k < M; ++k) total += equations.f[k];
-    if (!(total > 0) || !on.any()) return this->status_ = rule_status::no_information;
+    if (!(total > 0) || !on.any()) return this->end(rule_status::no_information);
 
     double tau[M];
     const bool solved = equations.solve(on, on.all(), tau);
@@ -112,24 +118,25 @@ class linear_heuristic : public rule_base<Real, M> {
         const auto variance = [this](const phimis::fractions<double, M>& alpha) { return sample_variance(alpha); };
         treated = equations.complete(on) && equations.best_face(on, variance, tau);
       } else {
-        treated = memory_.projection.fit(on, this->options_.start, this->options_.prior, tau);
+        treated = this->memory().projection.fit(on, this->options_.start, this->options_.prior, admitted(), tau);
       }
-      if (!treated) return this->status_ = solved ? rule_status::not_converged : rule_status::no_information;
+      if (!treated) return this->end(solved ? rule_status::not_converged : rule_status::no_information);
     }
     const phimis::fractions<double, M> alpha = on.at(tau);
-    for (int k = 0; k < M; ++k) this->fractions_[k] = static_cast<Real>(alpha[k]);
-    return this->status_ = rule_status::updated;
+    for (int k = 0; k < M; ++k) this->state_.fractions[k] = static_cast<Real>(alpha[k]);
+    return this->end(rule_status::updated);
   }
 
   /// Adds the observations of another state, in any grouping; fractions stay until the next update.
   PHIMIS_HOST_DEVICE void merge(const linear_heuristic& other) {
-    this->counters_.merge(other.counters_);
-    sums_.merge(other.sums_);
-    if constexpr (Treatment == negative_fractions::project) memory_.projection.merge(other.memory_.projection);
+    this->state_.counters.merge(other.state_.counters);
+    this->memory().sums.merge(other.memory().sums);
+    if constexpr (Treatment == negative_fractions::project)
+      this->memory().projection.merge(other.memory().projection);
     if constexpr (Treatment == negative_fractions::best_face) {
       for (int k = 0; k < M; ++k) {
-        const std::ptrdiff_t theirs = other.memory_.samples[k].size();  // `other` may be this
-        for (std::ptrdiff_t j = 0; j < theirs; ++j) keep(k, other.memory_.samples[k][j]);
+        const std::ptrdiff_t theirs = other.memory().samples[k].size();  // `other` may be this
+        for (std::ptrdiff_t j = 0; j < theirs; ++j) keep(k, other.memory().samples[k][j]);
       }
     }
   }
@@ -137,18 +144,22 @@ class linear_heuristic : public rule_base<Real, M> {
  private:
   static constexpr double rounding = static_cast<double>(epsilon<Real>);
 
+  PHIMIS_HOST_DEVICE double admitted() const noexcept {
+    return static_cast<double>(this->counters().observations - this->counters().nonfinite);
+  }
+
   PHIMIS_HOST_DEVICE void keep(int technique, const row<Real, M>& row) {
-    if (!memory_.samples[technique].push(row)) {
-      ++this->counters_.dropped;
-    } else if (row.u > memory_.largest) {
-      memory_.largest = row.u;
+    if (!this->memory().samples[technique].push(row)) {
+      ++this->state_.counters.dropped;
+    } else if (row.u > this->memory().largest) {
+      this->memory().largest = row.u;
     }
   }
 
   PHIMIS_HOST_DEVICE void count_left(const phimis::fractions<double, M>& alpha) noexcept {
     for (int k = 0; k < M; ++k) {
       if (!(alpha[k] < 0)) continue;
-      ++this->counters_.left;
+      ++this->state_.counters.left;
       return;
     }
   }
@@ -156,13 +167,13 @@ class linear_heuristic : public rule_base<Real, M> {
   PHIMIS_HOST_DEVICE linear_equations<M> equations_of_sums() const noexcept {
     linear_equations<M> result{};
     result.rounding = rounding;
-    double n = 0;
-    for (int k = 0; k < M; ++k) n += static_cast<double>(sums_.n(k));
+    const technique_sums<Real, M>& sums = this->memory().sums;
+    const double n = admitted();
     for (int k = 0; k < M; ++k) {
-      result.f[k] = sums_.f(k);
-      const double pull = n > 0 ? static_cast<double>(this->options_.prior) / n * sums_.p(k, k) : 0;
+      result.f[k] = sums.f(k);
+      const double pull = n > 0 ? static_cast<double>(this->options_.prior) / n * sums.p(k, k) : 0;
       for (int i = 0; i < M; ++i) {
-        result.p[i][k] = sums_.p(i, k) + pull * ((i == k ? 1 : 0) - static_cast<double>(this->options_.start[k]));
+        result.p[i][k] = sums.p(i, k) + pull * ((i == k ? 1 : 0) - static_cast<double>(this->options_.start[k]));
       }
     }
     return result;
@@ -170,10 +181,10 @@ class linear_heuristic : public rule_base<Real, M> {
 
   /// L Eq. 19, from each technique's own samples; in a unit that all mixtures share.
   PHIMIS_HOST_DEVICE double sample_variance(const phimis::fractions<double, M>& alpha) const noexcept {
-    const double unit = static_cast<double>(memory_.largest);
+    const double unit = static_cast<double>(this->memory().largest);
     double variance = 0;
     for (int k = 0; k < M; ++k) {
-      const Table& samples = memory_.samples[k];
+      const Table& samples = this->memory().samples[k];
       const std::ptrdiff_t n = samples.size();
       if (!(alpha[k] > 0) || n == 0) continue;
       moments<double> t;
@@ -187,9 +198,6 @@ class linear_heuristic : public rule_base<Real, M> {
     }
     return variance;
   }
-
-  technique_sums<Real, M> sums_;
-  detail::linear_memory<Real, M, Treatment, Table> memory_;
 };
 
 }  // namespace phimis

@@ -19,6 +19,23 @@ enum class newton_form {
   safeguarded
 };
 
+namespace detail {
+
+/// Sums of one batch, with t in units of `reference`, the t of the largest |s| so far.
+template <class Real>
+struct newton_sums {
+  Real n = 0;  // observations; −1 where the divergence is infinite
+  Real reference = 0;
+  Real zeta = 0;     // Σ (p_1 − p_2)/q s
+  Real slope = 0;    // Σ (p_1 − p_2)²/(q p) t s'
+  Real score = 0;    // Σ p/q s
+  Real tilt = 0;     // Σ (p_1 − p_2)/q
+  Real mixture = 0;  // Σ p/q
+  Real f = 0;        // Σ f/q
+};
+
+}  // namespace detail
+
 /// Newton–Raphson on the γ-moments of two techniques, one step for each batch, on that batch alone: O(1) memory.
 ///
 ///     ζ̂  = (1/N) Σ f^γ/p^{γ+1} (p_1 − p_2)
@@ -32,7 +49,8 @@ enum class newton_form {
 /// - The reversed Kullback–Leibler divergence (γ = 0) always takes the control variate: without it the step would
 ///   depend on the unit of f.
 template <class Divergence, class Real = double>
-class newton_raphson : public rule_base<Real, 2> {
+class newton_raphson : public rule_base<Real, 2, detail::newton_sums<Real>> {
+  using sums = detail::newton_sums<Real>;
   static_assert(has_exponent<Divergence>::value,
                 "newton_raphson needs a divergence of the power family; exact_minimiser takes any");
 
@@ -41,45 +59,47 @@ class newton_raphson : public rule_base<Real, 2> {
   PHIMIS_HOST_DEVICE explicit newton_raphson(const Divergence& divergence,
                                              newton_form form = newton_form::safeguarded,
                                              const rule_options<Real, 2>& options = {}) noexcept
-      : rule_base<Real, 2>(options), divergence_(divergence), form_(form) {}
+      : rule_base<Real, 2, sums>(options), divergence_(divergence), form_(form) {}
 
   PHIMIS_HOST_DEVICE const Divergence& divergence() const noexcept { return divergence_; }
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, 2>& sample) noexcept {
     row<Real, 2> row;
     if (!this->admit(sample, row)) return;
-    const auto& alpha = this->fractions_;
+    const auto& alpha = this->state_.fractions;
     const Real x = alpha[0] * row.y[0] + alpha[1] * row.y[1];
     const Real t = row.u > 0 ? row.u / x : Real(0);
     if (!is_finite(t)) {
-      ++this->counters_.nonfinite;
+      ++this->state_.counters.nonfinite;
       return;
     }
-    ++sums_.n;
+    sums& of = this->memory();
+    if (of.n < 0) return;
     if (row.u > 0) {
       refer_to(t);
     } else if (exponent() <= 0) {
-      sums_.infinite = true;
+      of.n = -1;
       return;
     }
+    of.n += 1;
     const Real tilt = row.w * (row.y[0] - row.y[1]);
-    const Real ratio = row.u > 0 ? t / sums_.reference : Real(0);
+    const Real ratio = row.u > 0 ? t / of.reference : Real(0);
     const score<Real> s = power_score(ratio, exponent());
-    sums_.zeta += tilt * s.value;
-    if (x > 0) sums_.slope += tilt * ((row.y[0] - row.y[1]) / x) * s.slope;
-    sums_.score += row.w * x * s.value;
-    sums_.tilt += tilt;
-    sums_.mixture += row.w * x;
-    sums_.f += row.w * x * ratio;
+    of.zeta += tilt * s.value;
+    if (x > 0) of.slope += tilt * ((row.y[0] - row.y[1]) / x) * s.slope;
+    of.score += row.w * x * s.value;
+    of.tilt += tilt;
+    of.mixture += row.w * x;
+    of.f += row.w * x * ratio;
   }
 
   PHIMIS_HOST_DEVICE rule_status update() noexcept {
-    const sums batch = sums_;
-    sums_ = sums{};
-    if (batch.infinite) return this->status_ = rule_status::infinite_divergence;
-    if (!(batch.f > 0)) return this->status_ = rule_status::no_information;
+    const sums batch = this->memory();
+    this->memory() = sums{};
+    if (batch.n < 0) return this->end(rule_status::infinite_divergence);
+    if (!(batch.f > 0)) return this->end(rule_status::no_information);
 
-    auto& alpha = this->fractions_;
+    auto& alpha = this->state_.fractions;
     const auto& options = this->options_;
     Real zeta = batch.zeta;
     Real slope = batch.slope;
@@ -91,23 +111,23 @@ class newton_raphson : public rule_base<Real, 2> {
       if (!(alpha[k] > 0)) {
         // An end is infinitely far from the prior: go back to where it is.
         alpha = share_budget(options.start, options);
-        return this->status_ = rule_status::updated;
+        return this->end(rule_status::updated);
       }
-      const Real mean = batch.f / static_cast<Real>(batch.n);
+      const Real mean = batch.f / batch.n;
       const score<Real> s = power_score(mean * options.start[k] / alpha[k], exponent());
       zeta += options.prior * (k == 0 ? s.value : -s.value);
       slope += options.prior * s.slope / alpha[k];
     }
     const Real step = zeta / slope;
-    if (!(slope > 0)) return this->status_ = rule_status::no_information;
+    if (!(slope > 0)) return this->end(rule_status::no_information);
     if (!is_finite(step)) {
-      ++this->counters_.left;
-      return this->status_ = rule_status::not_converged;
+      ++this->state_.counters.left;
+      return this->end(rule_status::not_converged);
     }
     const Real low = options.floors[0];
     const Real high = 1 - options.floors[1];
     Real first = alpha[0] + step;
-    if (first < 0 || first > 1) ++this->counters_.left;
+    if (first < 0 || first > 1) ++this->state_.counters.left;
     if (form_ == newton_form::safeguarded) {
       if (first < low) first = (alpha[0] + low) / 2;
       if (first > high) first = (alpha[0] + high) / 2;
@@ -115,49 +135,39 @@ class newton_raphson : public rule_base<Real, 2> {
     first = first < low ? low : first > high ? high : first;
     alpha[0] = first;
     alpha[1] = first == high ? options.floors[1] : 1 - first;
-    return this->status_ = rule_status::updated;
+    return this->end(rule_status::updated);
   }
 
   /// Adds the batch that another state observed at the same fractions.
   PHIMIS_HOST_DEVICE void merge(const newton_raphson& other) noexcept {
-    PHIMIS_EXPECTS(this->fractions_[0] == other.fractions_[0]);
-    this->counters_.merge(other.counters_);
-    sums theirs = other.sums_;
+    PHIMIS_EXPECTS(this->state_.fractions[0] == other.state_.fractions[0]);
+    this->state_.counters.merge(other.state_.counters);
+    sums theirs = other.memory();
+    sums& of = this->memory();
+    if (theirs.n < 0) of.n = -1;
+    if (of.n < 0) return;
     if (theirs.reference > 0) {
       refer_to(theirs.reference);
-      rescale(theirs, sums_.reference);
+      rescale(theirs, of.reference);
     }
-    sums_.n += theirs.n;
-    sums_.infinite = sums_.infinite || theirs.infinite;
-    sums_.zeta += theirs.zeta;
-    sums_.slope += theirs.slope;
-    sums_.score += theirs.score;
-    sums_.tilt += theirs.tilt;
-    sums_.mixture += theirs.mixture;
-    sums_.f += theirs.f;
+    of.n += theirs.n;
+    of.zeta += theirs.zeta;
+    of.slope += theirs.slope;
+    of.score += theirs.score;
+    of.tilt += theirs.tilt;
+    of.mixture += theirs.mixture;
+    of.f += theirs.f;
   }
 
  private:
-  /// Sums of one batch, with t in units of `reference`, the t of the largest |s| so far.
-  struct sums {
-    std::int64_t n = 0;
-    bool infinite = false;
-    Real reference = 0;
-    Real zeta = 0;     // Σ (p_1 − p_2)/q s
-    Real slope = 0;    // Σ (p_1 − p_2)²/(q p) t s'
-    Real score = 0;    // Σ p/q s
-    Real tilt = 0;     // Σ (p_1 − p_2)/q
-    Real mixture = 0;  // Σ p/q
-    Real f = 0;        // Σ f/q
-  };
-
   PHIMIS_HOST_DEVICE Real exponent() const noexcept { return static_cast<Real>(divergence_.exponent()); }
 
   PHIMIS_HOST_DEVICE void refer_to(Real t) noexcept {
-    if (!(sums_.reference > 0)) {
-      sums_.reference = t;
-    } else if (exponent() > 0 ? t > sums_.reference : t < sums_.reference) {
-      rescale(sums_, t);
+    sums& of = this->memory();
+    if (!(of.reference > 0)) {
+      of.reference = t;
+    } else if (exponent() > 0 ? t > of.reference : t < of.reference) {
+      rescale(of, t);
     }
   }
 
@@ -180,7 +190,6 @@ class newton_raphson : public rule_base<Real, 2> {
 
   Divergence divergence_;
   newton_form form_;
-  sums sums_{};
 };
 
 }  // namespace phimis

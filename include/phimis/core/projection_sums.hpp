@@ -10,8 +10,6 @@
 #include <phimis/core/observation.hpp>
 #include <phimis/core/solve_nonnegative.hpp>
 
-#include <cstdint>
-
 namespace phimis {
 
 /// The normal equations of M weighted least-squares fits of f by Σ_k a_k p_k, one for each anchor mixture p_c.
@@ -36,7 +34,6 @@ class projection_sums {
   }
 
   PHIMIS_HOST_DEVICE void add(const row<Real, M>& row) noexcept {
-    ++n_;
     if (!(row.w > 0)) return;
     refer_to(row.u);
     const Real u = row.u > 0 ? row.u / unit_ : Real(0);
@@ -55,21 +52,18 @@ class projection_sums {
     projection_sums theirs = other;
     theirs.refer_to(unit_);
     refer_to(theirs.unit_);
-    n_ += theirs.n_;
     for (int c = 0; c < M; ++c) {
       for (int i = 0; i < M; ++i) b_[c][i] += theirs.b_[c][i];
       for (int i = 0; i < pairs; ++i) g_[c][i] += theirs.g_[c][i];
     }
   }
 
-  PHIMIS_HOST_DEVICE std::int64_t n() const noexcept { return n_; }
-
   /// The equations whose weight is that of the mixture α, or near it:  Σ_c λ_c G^c,  Σ_c λ_c b^c,  for all M.
   ///
   /// Outside the anchors, where a λ_c would be negative, the sum without it. The prior is M more rows of that weight, in
-  /// each of which one technique alone has density and f = μ̂ π_k.
+  /// each of which one technique alone has density and f = μ̂ π_k; n is the number of observations.
   PHIMIS_HOST_DEVICE void equations(const fractions<double, M>& alpha, const fractions<Real, M>& start, double prior,
-                                    double (&g)[M][M], double (&b)[M]) const noexcept {
+                                    double n, double (&g)[M][M], double (&b)[M]) const noexcept {
     double lambda[M];
     double sum = 0;
     for (int c = 0; c < M; ++c) {
@@ -92,7 +86,7 @@ class projection_sums {
       for (int i = 0; i < M; ++i) {
         const double weight = share * prior / anchor(c, i);
         g[i][i] += weight;
-        b[i] += weight * static_cast<double>(start[i]) * total / static_cast<double>(n_);
+        b[i] += weight * static_cast<double>(start[i]) * total / n;
       }
     }
     for (int i = 0; i < M; ++i) {
@@ -102,14 +96,14 @@ class projection_sums {
 
   /// The nonnegative fit whose weight is nearly 1/p(α) at its own α: τ[size], summing to one. False where every f is 0, a
   /// pdf that can move was 0 everywhere, or a sum is not finite.
-  PHIMIS_HOST_DEVICE bool fit(const movable_techniques<M>& on, const fractions<Real, M>& start, Real prior,
+  PHIMIS_HOST_DEVICE bool fit(const movable_techniques<M>& on, const fractions<Real, M>& start, Real prior, double n,
                               double (&tau)[M]) const noexcept {
     constexpr int steps = 8;  // each brings the weight nearer to 1/p(α) by a factor of 2 to 50
     fractions<double, M> alpha = equal_fractions<double, M>();
     for (int step = 0; step <= steps; ++step) {
       double g[M][M];
       double b[M];
-      equations(alpha, start, static_cast<double>(prior), g, b);
+      equations(alpha, start, static_cast<double>(prior), n, g, b);
       for (int i = 0; i < on.size; ++i) {
         if (!(g[on.technique[i]][on.technique[i]] > 0)) return false;
       }
@@ -136,7 +130,6 @@ class projection_sums {
     unit_ = u;
   }
 
-  std::int64_t n_ = 0;
   Real unit_ = 0;
   Real g_[M][pairs] = {};
   Real b_[M][M] = {};

@@ -7,11 +7,12 @@
 #include <phimis/core/observation.hpp>
 
 #include <cstdint>
+#include <type_traits>
 
 namespace phimis {
 
 /// How the last update of a rule ended.
-enum class rule_status {
+enum class rule_status : std::uint8_t {
   start,                ///< no update yet: the start fractions
   updated,              ///< new fractions
   local,                ///< new fractions at a local minimum of an objective that is not convex
@@ -20,13 +21,16 @@ enum class rule_status {
   not_converged         ///< the solver's residual stayed above its tolerance: fractions are its best
 };
 
-/// What a rule met on its way; every observation is counted once in `observations`.
+/// What a rule met on its way; every observation is counted once in `observations`. In float, whose rules live by the
+/// million in a renderer, each count is 32 bits wide.
+template <class Real>
 struct rule_counters {
-  std::int64_t observations = 0;
-  std::int64_t zero = 0;       ///< f = 0: observations like any other
-  std::int64_t nonfinite = 0;  ///< refused: not finite, a negative pdf, or a density of 0
-  std::int64_t dropped = 0;    ///< refused: the table was full
-  std::int64_t left = 0;       ///< iterates that left [0, 1] before they were brought back
+  using count = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::int64_t>;
+  count observations = 0;
+  count zero = 0;       ///< f = 0: observations like any other
+  count nonfinite = 0;  ///< refused: not finite, a negative pdf, or a density of 0
+  count dropped = 0;    ///< refused: the table was full
+  count left = 0;       ///< iterates that left [0, 1] before they were brought back
 
   PHIMIS_HOST_DEVICE void merge(const rule_counters& other) noexcept {
     observations += other.observations;
@@ -112,37 +116,61 @@ PHIMIS_HOST_DEVICE fractions<Real, M> share_budget(const per_technique<Real, M>&
   return alpha;
 }
 
-/// What every rule has: its options, its fractions, the status of its last update, its counters.
-template <class Real, int M>
+/// What a rule has learnt: all that changes. A host with many rules of the same options keeps one rule and many of these.
+template <class Real, int M, class Memory>
+struct rule_state {
+  phimis::fractions<Real, M> fractions;
+  rule_counters<Real> counters;
+  rule_status status;
+  Memory memory;  ///< of observations, as the rule keeps them
+};
+
+/// The memory of a rule that keeps nothing of observations.
+struct no_memory {};
+
+/// What every rule has: its options and its state.
+///
+///     rule.resume(pixels[i]);  …  rule.observe(sample);  rule.update();  …  pixels[i] = rule.state();
+template <class Real, int M, class Memory = no_memory>
 class rule_base {
  public:
   static constexpr int techniques = M;
   using real = Real;
+  using state_type = rule_state<Real, M, Memory>;
 
   PHIMIS_HOST_DEVICE explicit rule_base(const rule_options<Real, M>& options) noexcept
-      : options_(options), fractions_(share_budget(options.start, options)) {}
+      : options_(options), state_{share_budget(options.start, options), {}, rule_status::start, {}} {}
+
+  /// What has been learnt so far, to be kept apart from the options.
+  PHIMIS_HOST_DEVICE const state_type& state() const noexcept { return state_; }
+  /// Goes on from a state that a rule of the same type and options gave.
+  PHIMIS_HOST_DEVICE void resume(const state_type& state) { state_ = state; }
 
   PHIMIS_HOST_DEVICE const rule_options<Real, M>& options() const noexcept { return options_; }
-  PHIMIS_HOST_DEVICE const phimis::fractions<Real, M>& fractions() const noexcept { return fractions_; }
-  PHIMIS_HOST_DEVICE const rule_counters& counters() const noexcept { return counters_; }
-  PHIMIS_HOST_DEVICE rule_status status() const noexcept { return status_; }
+  PHIMIS_HOST_DEVICE const phimis::fractions<Real, M>& fractions() const noexcept { return state_.fractions; }
+  PHIMIS_HOST_DEVICE const rule_counters<Real>& counters() const noexcept { return state_.counters; }
+  PHIMIS_HOST_DEVICE rule_status status() const noexcept { return state_.status; }
 
  protected:
   /// Counts an observation and writes its row; false where it is refused.
   PHIMIS_HOST_DEVICE bool admit(const observation<Real, M>& sample, row<Real, M>& out) noexcept {
-    ++counters_.observations;
+    ++state_.counters.observations;
     if (!to_row(sample, out)) {
-      ++counters_.nonfinite;
+      ++state_.counters.nonfinite;
       return false;
     }
-    if (!(out.u > 0)) ++counters_.zero;
+    if (!(out.u > 0)) ++state_.counters.zero;
     return true;
   }
 
+  /// Ends an update.
+  PHIMIS_HOST_DEVICE rule_status end(rule_status how) noexcept { return state_.status = how; }
+
+  PHIMIS_HOST_DEVICE Memory& memory() noexcept { return state_.memory; }
+  PHIMIS_HOST_DEVICE const Memory& memory() const noexcept { return state_.memory; }
+
   rule_options<Real, M> options_;
-  phimis::fractions<Real, M> fractions_;
-  rule_counters counters_{};
-  rule_status status_ = rule_status::start;
+  state_type state_;
 };
 
 /// The rule that learns nothing: its fractions are the start, equal by default, whatever the floors.
@@ -152,15 +180,17 @@ class fixed_fractions : public rule_base<Real, M> {
   PHIMIS_HOST_DEVICE fixed_fractions() noexcept : fixed_fractions(rule_options<Real, M>{}) {}
   PHIMIS_HOST_DEVICE explicit fixed_fractions(const rule_options<Real, M>& options) noexcept
       : rule_base<Real, M>(options) {
-    this->fractions_ = options.start;
+    this->state_.fractions = options.start;
   }
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, M>& sample) noexcept {
     row<Real, M> ignored;
     this->admit(sample, ignored);
   }
-  PHIMIS_HOST_DEVICE rule_status update() noexcept { return this->status_; }
-  PHIMIS_HOST_DEVICE void merge(const fixed_fractions& other) noexcept { this->counters_.merge(other.counters_); }
+  PHIMIS_HOST_DEVICE rule_status update() noexcept { return this->state_.status; }
+  PHIMIS_HOST_DEVICE void merge(const fixed_fractions& other) noexcept {
+    this->state_.counters.merge(other.state_.counters);
+  }
 };
 
 }  // namespace phimis

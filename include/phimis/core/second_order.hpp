@@ -4,72 +4,25 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/finite.hpp>
-#include <phimis/core/limits.hpp>
+#include <phimis/core/quadratic_on_simplex.hpp>
 #include <phimis/core/rule.hpp>
-#include <phimis/core/simplex_newton.hpp>
 #include <phimis/core/simplex_problem.hpp>
 
-#include <cmath>
 #include <cstdint>
 
 namespace phimis {
 
 namespace detail {
 
-/// The quadratic that `second_order` minimises, in the coordinates of `floored_simplex`.
-///
-///     K(β) = −b·d/(2C) + ½ dᵀA d,   d = β − π/C,   b = Aπ
-template <int M>
-class second_order_problem {
- public:
-  static constexpr bool convex = true;
+/// With t = f/p(π) in units of `reference`, the largest so far.
+template <class Real, int M>
+struct second_order_sums {
+  static constexpr int entries = M * (M + 1) / 2;
 
-  PHIMIS_HOST_DEVICE second_order_problem(const double (&a)[M][M], const double (&b)[M], double mean_cost,
-                                          floored_simplex& on) noexcept
-      : a_(a), b_(b), mean_cost_(mean_cost), on_(on) {}
-
-  PHIMIS_HOST_DEVICE static double power() noexcept { return 0; }
-
-  PHIMIS_HOST_DEVICE double gradient(const double* theta, double* gradient, double* sizes) noexcept {
-    on_.at(theta);
-    double raw[M];
-    double lambda = 0;
-    for (int k = 0; k < M; ++k) {
-      raw[k] = 1.5 * b_[k] / mean_cost_;
-      for (int l = 0; l < M; ++l) raw[k] -= a_[k][l] * on_.beta()[l];
-      lambda += on_.beta()[k] * b_[k] / mean_cost_;
-    }
-    on_.pull_back(raw, gradient);
-    for (int i = 0; i < on_.size(); ++i) sizes[i] = std::fabs(gradient[i]);
-    return lambda;
-  }
-
-  PHIMIS_HOST_DEVICE void hessian(const int* support, int size, double* hessian) noexcept {
-    double raw[(M + 1) * (M + 1)];
-    const double* const fixed = on_.fixed();
-    const int order = size + (fixed != nullptr ? 1 : 0);
-    for (int i = 0; i < order; ++i) {
-      for (int j = 0; j < order; ++j) {
-        double sum = 0;
-        for (int k = 0; k < M; ++k) {
-          for (int l = 0; l < M; ++l) sum += column(support, size, i, k) * a_[k][l] * column(support, size, j, l);
-        }
-        raw[i * order + j] = sum;
-      }
-    }
-    on_.pull_back(raw, support, size, hessian);
-  }
-
- private:
-  /// Technique i of the support, or, as the last column, the fixed fractions.
-  PHIMIS_HOST_DEVICE double column(const int* support, int size, int i, int k) const noexcept {
-    return i == size ? on_.fixed()[k] : on_.technique(support[i]) == k ? 1.0 : 0.0;
-  }
-
-  const double (&a_)[M][M];
-  const double (&b_)[M];
-  double mean_cost_;
-  floored_simplex& on_;
+  std::int64_t n = 0;
+  Real reference = 0;
+  Real f = 0;            // Σ f/q
+  Real a[entries] = {};  // Σ f² p_k p_l/(p³ q), k >= l
 };
 
 }  // namespace detail
@@ -95,11 +48,13 @@ class second_order_problem {
 ///   cost times the second moment, not the variance.
 /// - The prior enters as the second order of prior · D(π, α): a matrix prior · μ²/π_k on the diagonal.
 template <class Real, int M>
-class second_order : public rule_base<Real, M> {
+class second_order : public rule_base<Real, M, detail::second_order_sums<Real, M>> {
+  using sums = detail::second_order_sums<Real, M>;
+
  public:
   PHIMIS_HOST_DEVICE second_order() noexcept : second_order(rule_options<Real, M>{}) {}
   PHIMIS_HOST_DEVICE explicit second_order(const rule_options<Real, M>& options) noexcept
-      : rule_base<Real, M>(options) {}
+      : rule_base<Real, M, sums>(options) {}
 
   PHIMIS_HOST_DEVICE void observe(const observation<Real, M>& sample) noexcept {
     row<Real, M> row;
@@ -108,31 +63,33 @@ class second_order : public rule_base<Real, M> {
     for (int k = 0; k < M; ++k) x += this->options_.start[k] * row.y[k];
     const Real t = row.u > 0 ? row.u / x : Real(0);
     if (!is_finite(t)) {
-      ++this->counters_.nonfinite;
+      ++this->state_.counters.nonfinite;
       return;
     }
-    ++sums_.n;
+    sums& of = this->memory();
+    ++of.n;
     if (!(t > 0)) return;
-    if (t > sums_.reference) refer_to(t, sums_);
-    const Real ratio = t / sums_.reference;
-    sums_.f += row.w * x * ratio;
+    if (t > of.reference) refer_to(t, of);
+    const Real ratio = t / of.reference;
+    of.f += row.w * x * ratio;
     const Real square = row.w * x * ratio * ratio;
     for (int k = 0, at = 0; k < M; ++k) {
-      for (int l = 0; l <= k; ++l, ++at) sums_.a[at] += square * (row.y[k] / x) * (row.y[l] / x);
+      for (int l = 0; l <= k; ++l, ++at) of.a[at] += square * (row.y[k] / x) * (row.y[l] / x);
     }
   }
 
   PHIMIS_HOST_DEVICE rule_status update() noexcept {
     const auto& options = this->options_;
-    if (!(sums_.f > 0)) return this->status_ = rule_status::no_information;
+    const sums& of = this->memory();
+    if (!(of.f > 0)) return this->end(rule_status::no_information);
     double a[M][M];
-    const double n = static_cast<double>(sums_.n);
-    const double mean = static_cast<double>(sums_.f) / n;
+    const double n = static_cast<double>(of.n);
+    const double mean = static_cast<double>(of.f) / n;
     double mean_cost = 0;
     double kappa[M];
     for (int k = 0, at = 0; k < M; ++k) {
-      for (int l = 0; l <= k; ++l, ++at) a[k][l] = a[l][k] = static_cast<double>(sums_.a[at]) / n;
-      if (!(a[k][k] > 0)) return this->status_ = rule_status::no_information;
+      for (int l = 0; l <= k; ++l, ++at) a[k][l] = a[l][k] = static_cast<double>(of.a[at]) / n;
+      if (!(a[k][k] > 0)) return this->end(rule_status::no_information);
       const double start = static_cast<double>(options.start[k]);
       if (options.prior > 0 && start > 0) a[k][k] += static_cast<double>(options.prior) / n * mean * mean / start;
       mean_cost += start * static_cast<double>(options.costs[k]);
@@ -140,7 +97,7 @@ class second_order : public rule_base<Real, M> {
     }
     double b[M] = {};
     for (int k = 0; k < M; ++k) {
-      for (int l = 0; l < M; ++l) b[k] += a[k][l] * static_cast<double>(options.start[l]);
+      for (int l = 0; l < M; ++l) b[k] += a[k][l] * static_cast<double>(options.start[l]) / mean_cost;
     }
 
     double map_memory[floored_simplex::doubles(M)];
@@ -149,52 +106,31 @@ class second_order : public rule_base<Real, M> {
     const auto from = share_budget(options.start, options);
     on.constrain([&](int k) { return options.frozen[k]; },
                  [&](int k) { return options.frozen[k] ? from[k] : options.floors[k]; });
-    this->fractions_ = from;
-    if (!on.has_freedom()) return this->status_ = rule_status::updated;
-    detail::second_order_problem<M> problem(a, b, mean_cost, on);
-    double theta[M];
-    on.to_theta(from, theta);
-    double memory[simplex_doubles(M)];
-    int indices[simplex_indices(M)];
-    simplex_newton<detail::second_order_problem<M>> solver(problem, on.size(), memory, indices);
-    constexpr double rounding = static_cast<double>(epsilon<Real>);
-    const simplex_solution solution = solver.minimise(theta, 4 * rounding);
-    on.to_fractions(theta, this->fractions_);
-    const bool converged = solution.residual <= 1e4 * rounding;
-    return this->status_ = converged ? rule_status::updated : rule_status::not_converged;
+    this->state_.fractions = from;
+    if (!on.has_freedom()) return this->end(rule_status::updated);
+    return this->end(minimise_quadratic(a, b, 1.5, on, this->state_.fractions));
   }
 
   /// Adds what another state, with the same start, has observed.
   PHIMIS_HOST_DEVICE void merge(const second_order& other) noexcept {
     for (int k = 0; k < M; ++k) PHIMIS_EXPECTS(this->options_.start[k] == other.options_.start[k]);
-    this->counters_.merge(other.counters_);
-    sums theirs = other.sums_;
-    if (theirs.reference > sums_.reference) refer_to(theirs.reference, sums_);
-    if (theirs.reference > 0) refer_to(sums_.reference, theirs);
-    sums_.n += theirs.n;
-    sums_.f += theirs.f;
-    for (int at = 0; at < entries; ++at) sums_.a[at] += theirs.a[at];
+    this->state_.counters.merge(other.state_.counters);
+    sums theirs = other.memory();
+    sums& of = this->memory();
+    if (theirs.reference > of.reference) refer_to(theirs.reference, of);
+    if (theirs.reference > 0) refer_to(of.reference, theirs);
+    of.n += theirs.n;
+    of.f += theirs.f;
+    for (int at = 0; at < sums::entries; ++at) of.a[at] += theirs.a[at];
   }
 
  private:
-  static constexpr int entries = M * (M + 1) / 2;
-
-  /// With t = f/p(π) in units of `reference`, the largest so far.
-  struct sums {
-    std::int64_t n = 0;
-    Real reference = 0;
-    Real f = 0;            // Σ f/q
-    Real a[entries] = {};  // Σ f² p_k p_l/(p³ q), k >= l
-  };
-
   PHIMIS_HOST_DEVICE static void refer_to(Real t, sums& of) noexcept {
     const Real ratio = of.reference / t;
     of.f *= ratio;
     for (Real& entry : of.a) entry *= ratio * ratio;
     of.reference = t;
   }
-
-  sums sums_{};
 };
 
 }  // namespace phimis

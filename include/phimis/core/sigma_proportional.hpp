@@ -30,12 +30,12 @@ namespace phimis {
 /// - The prior is in the objective, n V[F]/(Σσ_i)² + prior · Σ π_i²/α_i: each σ_i² is a mean of n samples' and of the one
 ///   that would ask for the start.
 template <class Real, int M, class Heuristic = balance>
-class sigma_proportional : public rule_base<Real, M> {
+class sigma_proportional : public rule_base<Real, M, technique_moments<Real, M>> {
  public:
   PHIMIS_HOST_DEVICE sigma_proportional() noexcept : sigma_proportional(rule_options<Real, M>{}) {}
   PHIMIS_HOST_DEVICE explicit sigma_proportional(const rule_options<Real, M>& options,
                                                  const Heuristic& heuristic = {}) noexcept
-      : rule_base<Real, M>(options), heuristic_(heuristic) {}
+      : rule_base<Real, M, technique_moments<Real, M>>(options), heuristic_(heuristic) {}
 
   PHIMIS_HOST_DEVICE const Heuristic& heuristic() const noexcept { return heuristic_; }
 
@@ -50,44 +50,44 @@ class sigma_proportional : public rule_base<Real, M> {
       for (int k = 0; k < M; ++k) shares[k] = row.y[k];
       value = scaled(heuristic_, i, row.u, shares);
       if (!is_finite(value)) {  // p_i = 0 at its own sample
-        ++this->counters_.nonfinite;
+        ++this->state_.counters.nonfinite;
         return;
       }
       if (sample.f < 0) value = -value;
     }
-    moments_.add(i, value);
+    this->memory().add(i, value);
   }
 
   PHIMIS_HOST_DEVICE rule_status update() noexcept {
     const auto& options = this->options_;
-    if (!moments_.any()) return this->status_ = rule_status::no_information;
+    if (!this->memory().any()) return this->end(rule_status::no_information);
     Real total = 0;     // S = Σ σ_k √c_k
     Real expected = 0;  // Σ π_k c_k
     per_technique<Real, M> sigma{};
     per_technique<Real, M> root{};
     for (int k = 0; k < M; ++k) {
-      if (!moments_.known(k) && this->fractions_[k] > 0) return this->status_ = rule_status::no_information;
-      sigma[k] = moments_.deviation(k);
+      if (!this->memory().known(k) && this->state_.fractions[k] > 0) return this->end(rule_status::no_information);
+      sigma[k] = this->memory().deviation(k);
       root[k] = std::sqrt(options.costs[k]);
       total += sigma[k] * root[k];
       expected += options.start[k] * options.costs[k];
     }
-    if (!(total > 0)) return this->status_ = rule_status::no_information;
+    if (!(total > 0)) return this->end(rule_status::no_information);
     per_technique<Real, M> shares{};
-    const Real prior = options.prior / static_cast<Real>(moments_.count());
+    const Real prior = options.prior / static_cast<Real>(this->memory().count());
     for (int k = 0; k < M; ++k) {
       const Real learnt = sigma[k] / total;
       const Real given = options.start[k] * root[k] / expected;
       shares[k] = (prior > 0 ? std::sqrt(learnt * learnt + prior * given * given) : learnt) / root[k];
     }
-    this->fractions_ = share_budget(shares, options);
-    return this->status_ = rule_status::updated;
+    this->state_.fractions = share_budget(shares, options);
+    return this->end(rule_status::updated);
   }
 
   /// Adds what another state has observed.
   PHIMIS_HOST_DEVICE void merge(const sigma_proportional& other) noexcept {
-    this->counters_.merge(other.counters_);
-    moments_.merge(other.moments_);
+    this->state_.counters.merge(other.state_.counters);
+    this->memory().merge(other.memory());
   }
 
  private:
@@ -102,7 +102,6 @@ class sigma_proportional : public rule_base<Real, M> {
   }
 
   Heuristic heuristic_;
-  technique_moments<Real, M> moments_{};
 };
 
 }  // namespace phimis

@@ -5,13 +5,11 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/observation.hpp>
 
-#include <cstdint>
-
 namespace phimis {
 
 /// What the linear heuristic keeps of the samples X_kj of each technique k.
 ///
-///     P_ik = Σ_j p_i(X_kj),   F_k = Σ_j |f(X_kj)|,   n_k
+///     P_ik = Σ_j p_i(X_kj),   F_k = Σ_j |f(X_kj)|
 ///
 /// Both in units of the largest Σp and |f| so far, so that no scale of them overflows.
 ///
@@ -27,7 +25,6 @@ class technique_sums {
     for (int i = 0; i < M; ++i) density += sample.pdfs[i];
     const Real f = sample.f < 0 ? -sample.f : sample.f;
     refer_to(density, f);
-    ++n_[k];
     if (density > 0) {
       for (int i = 0; i < M; ++i) p_[i][k] += sample.pdfs[i] / density_unit_;
     }
@@ -39,7 +36,6 @@ class technique_sums {
     theirs.refer_to(density_unit_, f_unit_);
     refer_to(theirs.density_unit_, theirs.f_unit_);
     for (int k = 0; k < M; ++k) {
-      n_[k] += theirs.n_[k];
       f_[k] += theirs.f_[k];
       for (int i = 0; i < M; ++i) p_[i][k] += theirs.p_[i][k];
     }
@@ -48,7 +44,6 @@ class technique_sums {
   /// P_ik and F_k, each in a unit of its own.
   PHIMIS_HOST_DEVICE double p(int i, int k) const noexcept { return static_cast<double>(p_[i][k]); }
   PHIMIS_HOST_DEVICE double f(int k) const noexcept { return static_cast<double>(f_[k]); }
-  PHIMIS_HOST_DEVICE std::int64_t n(int k) const noexcept { return n_[k]; }
 
  private:
   PHIMIS_HOST_DEVICE void refer_to(Real density, Real f) noexcept {
@@ -64,7 +59,6 @@ class technique_sums {
     }
   }
 
-  std::int64_t n_[M] = {};
   Real p_[M][M] = {};
   Real f_[M] = {};
   Real density_unit_ = 0;

@@ -70,19 +70,19 @@ class joint_minimiser : public rule_base<double, M> {
   }
 
   rule_status update() {
-    if (!(largest_ > 0)) return this->status_ = rule_status::no_information;
-    const auto solved = minimise_jointly<M>(table_.view(), largest_, this->options_, this->fractions_, variate_);
-    if (solved.status == rule_status::no_information) return this->status_ = solved.status;
-    this->fractions_ = solved.alpha;
+    if (!(largest_ > 0)) return this->end(rule_status::no_information);
+    const auto solved = minimise_jointly<M>(table_.view(), largest_, this->options_, this->state_.fractions, variate_);
+    if (solved.status == rule_status::no_information) return this->end(solved.status);
+    this->state_.fractions = solved.alpha;
     coefficients_ = solved.beta;
     variance_ = solved.objective / static_cast<double>(table_.size());
     solution_ = solved.solution;
-    return this->status_ = solved.status;
+    return this->end(solved.status);
   }
 
   /// Adds the observations of another state; fractions stay until the next update.
   void merge(const joint_minimiser& other) {
-    this->counters_.merge(other.counters_);
+    this->state_.counters.merge(other.state_.counters);
     const std::ptrdiff_t theirs = other.table_.size();  // `other` may be this
     for (std::ptrdiff_t j = 0; j < theirs; ++j) keep(other.table_[j]);
   }

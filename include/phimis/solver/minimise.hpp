@@ -41,7 +41,7 @@ struct minimum {
   double lambda = 0;       ///< Σ_j p_j/q_j |s(t_j)|, in a unit of f that the solver chose
   double residual = 0;     ///< of the conditions of optimality on all coordinates, over λ
   double gap = 0;          ///< the objective is within gap · λ of its minimum, where it is convex
-  rule_counters counters;  ///< of the observations
+  rule_counters<double> counters;  ///< of the observations
 };
 
 namespace detail {

@@ -44,7 +44,7 @@ template <class Real>
 equations at(const sums<Real>& of, const alpha3& alpha, double prior = 0,
              const phimis::fractions<Real, 3>& start = phimis::equal_fractions<Real, 3>()) {
   equations result{};
-  of.equations(alpha, start, prior, result.g, result.b);
+  of.equations(alpha, start, prior, 60, result.g, result.b);
   return result;
 }
 
@@ -163,7 +163,7 @@ TEST_CASE("The fit solves the equations whose weight is that of its own mixture"
   const auto options = phimis::without_floors<double, 3>();
   const phimis::movable_techniques<3> on(options);
   double tau[3];
-  REQUIRE(all.fit(on, options.start, 0.0, tau));
+  REQUIRE(all.fit(on, options.start, 0.0, 60, tau));
   const auto solution = [&](const alpha3& alpha) {
     equations e = at(all, alpha);
     double x[3];
@@ -191,7 +191,6 @@ TEMPLATE_TEST_CASE("Projections of merged states are those of all rows, in any g
       groups[static_cast<std::size_t>(random.below(static_cast<int>(groups.size()) - 1))].merge(groups.back());
       groups.pop_back();
     }
-    CHECK(groups[0].n() == 60);
     CHECK(close(at(groups[0], somewhere), at(of(all), somewhere), tolerance));
   }
   static_assert(std::is_trivially_copyable<sums<TestType>>::value, "");
