@@ -49,14 +49,15 @@ struct tile {
 
 inline constexpr int tile_size = 16;
 
+inline int tiles_across(int pixels) { return (pixels + tile_size - 1) / tile_size; }
+inline int tile_count(int width, int height) { return tiles_across(width) * tiles_across(height); }
+
 /// Calls f(tile) for tiles that cover the image, as for_each_index does.
 template <class F>
 void for_each_tile(int width, int height, int threads, const F& f) {
-  const int columns = (width + tile_size - 1) / tile_size;
-  const int rows = (height + tile_size - 1) / tile_size;
-  for_each_index(columns * rows, threads, [&](int i) {
-    const int x = i % columns * tile_size;
-    const int y = i / columns * tile_size;
+  for_each_index(tile_count(width, height), threads, [&](int i) {
+    const int x = i % tiles_across(width) * tile_size;
+    const int y = i / tiles_across(width) * tile_size;
     f(tile{x, y, std::min(x + tile_size, width), std::min(y + tile_size, height)});
   });
 }
