@@ -43,7 +43,9 @@ inline void add_options(CLI::App& app, arguments& to, const std::vector<std::str
   app.add_option("--runs", to.runs, "independent images per method")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
-  app.add_option("--seed", to.seed, "of all random numbers but the reference's")->capture_default_str();
+  app.add_option("--seed", to.seed, "of all random numbers but the reference's")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--threads", to.threads, "images do not depend on it")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));

@@ -58,6 +58,7 @@ class max_phong {
   }
 
   const vector& normal() const { return normal_; }
+  const vector& mirrored_view() const { return mirrored_view_; }
 
  private:
   /// pdf N·L/π.

@@ -16,10 +16,10 @@ namespace direct_lighting {
 
 /// A file name that is different for every reference.
 inline std::string reference_name(const scene_options& of, int width, int height, std::int64_t samples) {
-  char text[160];
-  std::snprintf(text, sizeof text, "reference_%dx%d_%lld_samples_plates%d_exponents%g-%g-%g-%g_radii%g.exr", width,
-                height, static_cast<long long>(samples), of.plates, of.exponents[0], of.exponents[1], of.exponents[2],
-                of.exponents[3], of.radius_scale);
+  char text[240];
+  std::snprintf(text, sizeof text, "reference_%dx%d_%lld_samples_plates%d_exponents%.9g-%.9g-%.9g-%.9g_radii%.9g.exr",
+                width, height, static_cast<long long>(samples), of.plates, of.exponents[0], of.exponents[1],
+                of.exponents[2], of.exponents[3], of.radius_scale);
   return text;
 }
 

@@ -67,7 +67,7 @@ class scene {
  public:
   explicit scene(const scene_options& options = {}) : plates_(options.plates) {
     if (options.plates < 1 || options.plates > 4) throw std::invalid_argument("there are 1 to 4 plates");
-    if (!(options.radius_scale > 0)) throw std::invalid_argument("the radius scale must be positive");
+    if (!(options.radius_scale >= 1e-3f)) throw std::invalid_argument("the radius scale must be at least 0.001");
     const float radii[] = {0.07f, 0.16f, 0.4f, 1};
     const render::rgb colours[] = {{4, 2, 1}, {2, 4, 1}, {2, 1, 4}, {4, 1, 2}};
     for (int k = 0; k < light_count; ++k) {
@@ -85,8 +85,14 @@ class scene {
       }
       plates[at(i)] = {centres[i], (to_eye + to_lights).normalized(), options.exponents[at(i)]};
     }
-    check_that_lights_touch_nothing();
-    for (int i = 0; i < plates_; ++i) find_hiding_plates(i);
+    for (const plate& a : plates) {
+      for (const plate& b : plates) {
+        for (const light& l : lights) {
+          if (!in_sight(a, l, b))
+            throw std::invalid_argument("the radius scale is so large that lights reach the plates");
+        }
+      }
+    }
   }
 
   static vector eye() { return {0, 6, 18}; }
@@ -135,17 +141,15 @@ class scene {
     return point;
   }
 
-  /// Whether nothing is before light k in a direction in which a ray from the point hits it.
-  bool visible(const shading_point& from, int k, const vector& direction) const {
-    const unsigned lights_before = from.hiding[at(k)];
-    const unsigned plates_before = hiding_plates_[at(from.plate)][at(k)];
-    if ((lights_before | plates_before) == 0) return true;
+  /// Whether nothing is before light k in a direction in which a ray from the point hits it. Only lights can be: that no
+  /// plate is between a plate and a light is checked once, at construction.
+  static bool visible(const shading_point& from, int k, const vector& direction) {
+    const unsigned before = from.hiding[at(k)];
+    if (before == 0) return true;
     const float distance = entry(from.lights[at(k)], direction).distance;
     for (int j = 0; j < light_count; ++j) {
       const seen_light& other = from.lights[at(j)];
-      if ((lights_before >> j & 1u) && hits(other, direction) && entry(other, direction).distance < distance)
-        return false;
-      if ((plates_before >> j & 1u) && distance_to(plates[at(j)], from.position, direction) < distance) return false;
+      if ((before >> j & 1u) && hits(other, direction) && entry(other, direction).distance < distance) return false;
     }
     return true;
   }
@@ -171,42 +175,20 @@ class scene {
     return a.axis.dot(b.axis) > std::cos(std::min(most, pi));
   }
 
-  void check_that_lights_touch_nothing() const {
-    for (const light& l : lights) {
-      for (const plate& p : plates) {
-        const vector to = l.centre - p.centre;
-        const float x = std::max(0.0f, std::fabs(to.x()) - plate::half_width);
-        const float y = std::max(0.0f, std::fabs(to.dot(p.across())) - plate::half_depth);
-        if (!(vector(x, y, to.dot(p.normal)).norm() > l.radius)) {
-          throw std::invalid_argument("the radius scale is so large that a light touches a plate");
-        }
-      }
+  /// Whether light l is clear of plate b and nothing of b is between it and plate a: the plane of b, or a horizontal one,
+  /// has b on one side and both others on the other.
+  static bool in_sight(const plate& a, const light& l, const plate& b) {
+    bool above_plane = b.normal.dot(l.centre - b.centre) > l.radius;
+    float lowest = l.centre.y() - l.radius, highest = -std::numeric_limits<float>::infinity();
+    for (int c = 0; c < 4; ++c) {
+      above_plane = above_plane && (&a == &b || b.normal.dot(a.corner(c) - b.centre) > 0);
+      lowest = std::min(lowest, a.corner(c).y());
+      highest = std::max(highest, b.corner(c).y());
     }
-  }
-
-  /// A bit for each plate that may be between plate i and a light: not where the plane of that plate, or a horizontal
-  /// one, is between them. In the papers' scene no plate hides a light.
-  void find_hiding_plates(int i) {
-    for (int k = 0; k < light_count; ++k) {
-      const light& l = lights[at(k)];
-      for (int j = 0; j < plates_; ++j) {
-        const plate& other = plates[at(j)];
-        bool above_plane = other.normal.dot(l.centre - other.centre) > l.radius;
-        float lowest = l.centre.y() - l.radius, highest = -std::numeric_limits<float>::infinity();
-        for (int c = 0; c < 4; ++c) {
-          above_plane = above_plane && other.normal.dot(plates[at(i)].corner(c) - other.centre) > 0;
-          lowest = std::min(lowest, plates[at(i)].corner(c).y());
-          highest = std::max(highest, other.corner(c).y());
-        }
-        if (j != i && !above_plane && !(lowest > highest)) {
-          hiding_plates_[at(i)][at(k)] = static_cast<unsigned char>(hiding_plates_[at(i)][at(k)] | 1u << j);
-        }
-      }
-    }
+    return above_plane || lowest > highest;
   }
 
   int plates_;
-  std::array<std::array<unsigned char, light_count>, 4> hiding_plates_{};
 };
 
 /// What the pixels of an image see.

@@ -37,11 +37,12 @@ class techniques {
  public:
   static constexpr int brdf = M - 1;
 
-  explicit techniques(const direct_lighting::scene& of) : scene_(of) {
+  explicit techniques(const scene& of) {
     float total = 0;
     for (const light& l : of.lights) total += l.power;
     float sum = 0;
     for (std::size_t k = 0; k < light_count; ++k) {
+      radiance_[k] = of.lights[k].radiance;
       chance_[k] = M == 2 ? of.lights[k].power / total : 1;
       sum += of.lights[k].power / total;
       upto_[k] = sum;
@@ -53,9 +54,9 @@ class techniques {
     if (technique == brdf) return draw_brdf(from, u0, u1, u2);
     const int k = M == 2 ? pick(u0) : technique;
     const light_point x = LightSampling::sample(from.lights[at(k)], u1, u2);
-    return seen(
-        from, k, x,
-        x.solid_angle > 0 && from.surface.normal().dot(x.direction) > 0 && scene_.visible(from, k, x.direction));
+    const bool lit =
+        x.solid_angle > 0 && from.surface.normal().dot(x.direction) > 0 && scene::visible(from, k, x.direction);
+    return seen(from, k, x, lit);
   }
 
  private:
@@ -65,7 +66,7 @@ class techniques {
     vector direction;
     if (!from.surface.sample(u0, u1, u2, direction)) return {};
     for (int k = 0; k < light_count; ++k) {
-      if (!hits(from.lights[at(k)], direction) || !scene_.visible(from, k, direction)) continue;
+      if (!hits(from.lights[at(k)], direction) || !scene::visible(from, k, direction)) continue;
       return seen(from, k, LightSampling::hit(from.lights[at(k)], direction), true);
     }
     return {};
@@ -76,7 +77,7 @@ class techniques {
     sample.pdfs[M == 2 ? 0 : k] = chance_[at(k)] * LightSampling::pdf(from.lights[at(k)]);
     if (!lit) return sample;
     const max_phong::reflection reflected = from.surface(x.direction);
-    sample.f = scene_.lights[at(k)].radiance * (reflected.brdf_cosine * x.solid_angle);
+    sample.f = radiance_[at(k)] * (reflected.brdf_cosine * x.solid_angle);
     sample.pdfs[brdf] = reflected.pdf * x.solid_angle;
     return sample;
   }
@@ -87,9 +88,9 @@ class techniques {
     return k;
   }
 
-  const direct_lighting::scene& scene_;
-  std::array<float, light_count> chance_;
-  std::array<float, light_count> upto_;
+  std::array<render::rgb, light_count> radiance_;
+  std::array<float, light_count> chance_;  ///< that a light technique takes this light
+  std::array<float, light_count> upto_;    ///< chances of two techniques, summed
 };
 
 }  // namespace direct_lighting
