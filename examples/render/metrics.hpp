@@ -71,6 +71,21 @@ inline image_error compare(const image<rgb>& picture, const image<rgb>& referenc
           kept / (pixels - static_cast<double>(trimmed))};
 }
 
+/// How far the sum of an image is from that of its reference, in standard errors: of independent pixels without bias.
+///
+///     z = Σ d / √ Σ d²,   d = I−R, summed over the channels
+inline double bias_in_standard_errors(const image<rgb>& picture, const image<rgb>& reference) {
+  PHIMIS_EXPECTS(picture.width == reference.width && picture.height == reference.height);
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    const double d = 3 * double{mean(picture.pixels[i] - reference.pixels[i])};
+    sum += d;
+    squares += d * d;
+  }
+  return squares > 0 ? sum / std::sqrt(squares) : 0;
+}
+
 }  // namespace render
 
 #endif  // PHIMIS_EXAMPLES_RENDER_METRICS_HPP

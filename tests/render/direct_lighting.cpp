@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <numbers>
 #include <vector>
 
 namespace {
@@ -81,7 +83,7 @@ TEST_CASE("A pixel sees what lies behind its centre") {
   const int size = 601;
   const auto points = shading_points(of, size, size, 2);
   // The pixel of a point, by angles: of the eye's direction and of the point's, around the horizontal axis.
-  const double half = std::tan(35 * M_PI / 360);
+  const double half = std::tan(35 * std::numbers::pi / 360);
   const auto pixel_of = [&](const vector& p) {
     const double y = p.y() - 6, depth = 18 - p.z(), tilt = std::atan2(6, 18);
     const double forward = depth * std::cos(tilt) - y * std::sin(tilt);
@@ -140,6 +142,39 @@ TEST_CASE("A pixel has one value, by area and cone sampling, by two and five tec
   // Were all of them off by one standard error, this would be 2. Pixels share their first estimate: a third of the n are
   // independent at worst.
   CHECK(squares / n < 1 + 4 * std::sqrt(2.0 / (n / 3.0)));
+}
+
+TEST_CASE("A light is visible where no other is hit before it") {
+  const scene of({.radius_scale = 3});  // two lights reach into each other
+  // The distance to the first hit in double, by the quadratic formula; infinite for a miss.
+  const auto hit = [&](const vector& from, const vector& direction, int k) {
+    const light& l = of.lights[static_cast<std::size_t>(k)];
+    const Eigen::Vector3d to = (l.centre.cast<double>() - from.cast<double>()),
+                          d = direction.cast<double>().normalized();
+    const double along = to.dot(d), under = along * along - to.squaredNorm() + double{l.radius} * double{l.radius};
+    return under > 0 ? along - std::sqrt(under) : std::numeric_limits<double>::infinity();
+  };
+  const render::random_stream random(6, 0);
+  int hidden = 0, tried = 0;
+  for (const shading_point& p : some_points(of, 24, 7)) {
+    for (int k = 0; k < light_count; ++k) {
+      for (std::uint32_t i = 0; i < 100; ++i) {
+        const auto u = random(static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(tried++));
+        const vector direction = cone_sampling::sample(p.lights[static_cast<std::size_t>(k)], u[1], u[2]).direction;
+        const double own = hit(p.position, direction, k);
+        double other = std::numeric_limits<double>::infinity();
+        for (int j = 0; j < light_count; ++j) {
+          if (j != k) other = std::min(other, hit(p.position, direction, j));
+        }
+        // Where the surfaces meet to 1e-3, and on a light's edge, float may decide either way.
+        if (std::isinf(own) || std::fabs(own - other) < 1e-3) continue;
+        REQUIRE(scene::visible(p, k, direction) == (own < other));
+        if (other < own) ++hidden;
+      }
+    }
+  }
+  CHECK(hidden > tried / 20);
+  CHECK(hidden < tried / 2);
 }
 
 TEST_CASE("Each technique alone finds the same value of large lights") {

@@ -122,8 +122,20 @@ TEST_CASE("The trimmed error leaves out one pixel of a thousand, the worst") {
   const auto two_bad = render::compare(picture, render::image<rgb>(50, 40));
   CHECK(two_bad.relmse == Approx((1998 * 1.0 + 2 * 1e6) / 2000));
   CHECK(two_bad.relmse_trimmed == Approx(1.0));
+  render::image<rgb> not_quite(1999, 1, {0.1f, 0.1f, 0.1f});  // of which one pixel goes
+  not_quite(3, 0) = not_quite(5, 0) = {100, 100, 100};
+  CHECK(render::compare(not_quite, render::image<rgb>(1999, 1)).relmse_trimmed == Approx((1997 + 1e6) / 1998));
   picture(0, 0) = {10, 10, 10};
   CHECK(render::compare(picture, render::image<rgb>(50, 40)).relmse_trimmed == Approx((1997 + 1e4) / 1998));
+}
+
+TEST_CASE("A bias is the root of the pixels in standard errors where all are off by the same, 0 where they cancel") {
+  const render::image<rgb> reference = ramp(10, 10);
+  render::image<rgb> picture = render::map(reference, [](rgb c) { return c + rgb{0.5f, 0.25f, 1}; });
+  CHECK(render::bias_in_standard_errors(picture, reference) == Approx(10).epsilon(1e-4));
+  for (std::size_t i = 0; i < 100; i += 2) picture.pixels[i] = reference.pixels[i] - rgb{0.5f, 0.25f, 1};
+  CHECK(render::bias_in_standard_errors(picture, reference) == Approx(0).margin(1e-3));
+  CHECK(render::bias_in_standard_errors(reference, reference) == 0);
 }
 
 TEST_CASE("Tones and colours") {

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace {
 
@@ -96,6 +97,20 @@ TEST_CASE("The pdf of max-Phong integrates to one at right angles, and to less w
   CHECK(total(surface(0, 20)) == Approx(1).epsilon(1e-3));
   // Half of a sharp lobe along the horizon is above it; the cosine lobe is whole.
   CHECK(total(surface(89.99f, 500)) == Approx(0.75).epsilon(2e-3));
+}
+
+TEST_CASE("max-Phong has the value of its formula") {
+  const vector normal(0, 0, 1), view = vector(0.6f, 0, 0.8f), light = vector(-0.48f, 0.36f, 0.8f);
+  // R·V = 0.8² + 0.6·0.48 = 0.928; max(N·L, N·V) = 0.8.
+  const auto at = max_phong(normal, view, 3, 0.25f, 0.5f)(light);
+  const double lobe = 0.5 * 4 / (2 * std::numbers::pi) * 0.928 * 0.928 * 0.928;
+  CHECK(at.brdf_cosine == Approx((0.25 / std::numbers::pi + lobe / 0.8) * 0.8).epsilon(1e-5));
+  CHECK(at.pdf == Approx(0.25 / std::numbers::pi * 0.8 + lobe).epsilon(1e-5));
+  const vector low = vector(-0.8f, 0, 0.6f);  // N·L < N·V
+  const auto there = max_phong(normal, view, 3, 0.25f, 0.5f)(low);
+  CHECK(there.brdf_cosine ==
+        Approx((0.25 / std::numbers::pi + 0.5 * 4 / (2 * std::numbers::pi) * std::pow(0.96, 3) / 0.8) * 0.6)
+            .epsilon(1e-5));
 }
 
 TEST_CASE("The max-Phong BRDF is reciprocal, and times the cosine at most the pdf") {
