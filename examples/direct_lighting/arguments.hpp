@@ -45,7 +45,7 @@ inline void add_options(CLI::App& app, arguments& to, const std::vector<std::str
       ->check(CLI::Range(1, 100000));
   app.add_option("--seed", to.seed, "of all random numbers but the reference's")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check([](const std::string& text) { return text[0] == '-' ? "must not be negative" : std::string(); });
   app.add_option("--threads", to.threads, "images do not depend on it")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
