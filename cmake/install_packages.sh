@@ -7,7 +7,8 @@ set -eu
 
 # what=package: a command, a header below /usr or /usr/local, or the sanitizers of clang++.
 examples="g++=g++ cmake=cmake ninja=ninja-build include/eigen3=libeigen3-dev include/boost/version.hpp=libboost-dev
-          include/CLI/CLI.hpp=libcli11-dev gnuplot=gnuplot-nox"
+          include/CLI/CLI.hpp=libcli11-dev gnuplot=gnuplot-nox include/png.h=libpng-dev
+          include/OpenEXR=libopenexr-dev include/Random123=librandom123-dev"
 tests="$examples clang++=clang clang-sanitizers=libclang-rt-dev include/catch2=catch2
        include/benchmark/benchmark.h=libbenchmark-dev"
 case ${1-} in
