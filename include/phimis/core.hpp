@@ -21,12 +21,14 @@
 #include <phimis/core/pack.hpp>
 #include <phimis/core/pair_sums.hpp>
 #include <phimis/core/projection_sums.hpp>
+#include <phimis/core/quadratic_on_simplex.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/second_order.hpp>
 #include <phimis/core/sigma_proportional.hpp>
 #include <phimis/core/solve_dense.hpp>
 #include <phimis/core/solve_nonnegative.hpp>
 #include <phimis/core/solve_pair.hpp>
+#include <phimis/core/streaming_newton.hpp>
 #include <phimis/core/table.hpp>
 #include <phimis/core/technique_moments.hpp>
 #include <phimis/core/technique_sums.hpp>

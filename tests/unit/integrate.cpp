@@ -472,3 +472,11 @@ TEST_CASE("Cost counts every sample at its price, efficiency is 1/(cost × varia
   }
   CHECK(learnt.cost == cost);
 }
+
+TEST_CASE("integrate() learns by a streaming rule nearly what the exact one learns") {
+  const integrate_options options{.budget = 40000, .iterations = 20};
+  const auto exact = phimis::integrate(f, three, options, phimis::exact_rule<3>(phimis::kullback_leibler{}));
+  const auto streaming = phimis::integrate(f, three, options, phimis::streaming_rule<3>(phimis::kullback_leibler{}));
+  CHECK(std::fabs(streaming.estimate - mu) < 5 * streaming.standard_error);
+  for (int k = 0; k < 3; ++k) CHECK(std::fabs(streaming.fractions[k] - exact.fractions[k]) < 0.1);
+}

@@ -13,16 +13,16 @@ namespace phimis {
 
 namespace detail {
 
-/// In units of the largest t = |f|/q so far; the batch since the last update, and what is left of earlier ones.
+/// With t = |f|/p(α) in units of the largest so far.
 template <class Real, int M>
 struct streaming_sums {
   static constexpr int entries = M * (M + 1) / 2;
 
   Real n = 0;
   Real reference = 0;
-  Real f = 0;            // Σ f/q
-  Real g[M] = {};        // Σ t^γ p_k/q
-  Real h[entries] = {};  // Σ t^γ p_k p_l/q², k >= l
+  Real f = 0;            // Σ |f|/q
+  Real g[M] = {};        // Σ s p_k/q
+  Real h[entries] = {};  // Σ s p_k p_l/(p q), k >= l
 
   PHIMIS_HOST_DEVICE void scale(Real factor, Real power) noexcept {
     f *= factor;
@@ -33,25 +33,28 @@ struct streaming_sums {
 
 }  // namespace detail
 
-/// Newton's method on the γ-moments of any number of techniques, from sums alone.
+/// Newton's method on the γ-moments of any number of techniques, from sums alone: O(M²) memory, all observations in use.
 ///
-///     G_k = Σ_j t_j^γ p_kj/q_j,   H_kl = Σ_j t_j^γ p_kj p_lj/q_j²,   t_j = |f_j|/q_j
-///     α ← argmin −(1 + 1/γ) Σ_k G_k α_k + ½ Σ_kl H_kl α_k α_l,   α_k ≥ floor_k,  α_k ≥ α_k/4,  Σ α_k = 1
+///     G_k  = Σ_j p_kj/q_j t_j^γ,   H_kl = Σ_j p_kj p_lj/(q_j p_j) t_j^γ,   t_j = |f_j|/p_j,   p_j = Σ_k α_k p_kj
+///     α   ← argmin ½ αᵀHα − (1 + 1/γ) Gᵀα,   α_k ≥ max(floor_k, α_k/4),   Σ α_k = 1
 ///
-/// the second order of Σ_j (q_j/p)^… at the fractions that each batch was drawn at, which q tells: the sums of many states and of
-/// many batches are one quadratic. For two techniques and one batch it is the step of `newton_raphson`; a fraction falls to a
-/// quarter at most, since a step to a floor starves the technique whose samples would have said so.
+/// each observation at the fractions of its time. Since Σ_l H_kl α_l = G_k, its second order around these is the same
+/// quadratic form whatever they were: sums over many fractions, and over many states, are one quadratic. At each update
+/// older sums are multiplied by `memory`: 0 is the paper's rule, this batch only; near 1 is least noise, but models around
+/// fractions that were bad stay. An update costs no pass over samples: many small ones in a row walk to the optimum.
 ///
-/// Batches drawn at other fractions are models around these. `memory` is what is left of older sums at each update:
-/// 1 keeps all alike, 0 is the paper's rule, that batch only.
+/// For two techniques and one batch drawn at q = p it is the step of `newton_raphson`. A fraction falls to a quarter of
+/// itself at most: a step to a floor starves the technique whose samples would have said so.
 ///
 /// Source   T Eqs. 30–32, for M techniques; floors as constraints.
-/// Requires a divergence of the power family, γ > 0; q the mixture of a batch, at fractions near these.
-/// Errors   `no_information` and fractions as before where every f is 0.
-/// Cost     M (M + 3)/2 multiplications an observation, and a power; M² memory; an update M³ for each change of the set of
-///          techniques at their floors.
-/// - pdfs may be defective: there is no control variate.
-/// - Costs are not known to this rule.
+/// Requires a divergence of the power family, γ > 0; 0 <= memory <= 1.
+/// Errors   no_information, and fractions as before, where every f is 0; not_converged, and all sums forgotten, where
+///          p/q was so large that one is not finite. An observation whose |f|/p is not finite is
+///          counted as such; of one with f = 0 the pdfs are not looked at.
+/// Cost     an observation with f ≠ 0: M (M + 5)/2 multiplications, two divisions and a power; with f = 0 nothing. An
+///          update: M³ for each change of the set of techniques at their floors.
+/// - There is no control variate: pdfs may be defective. Costs are not known to this rule.
+/// - The prior enters as the second order of prior · D(π, α) at π, at each update.
 template <class Divergence, class Real, int M>
 class streaming_newton : public rule_base<Real, M, detail::streaming_sums<Real, M>> {
   static_assert(has_exponent<Divergence>::value, "streaming_newton needs a divergence of the power family");
@@ -117,9 +120,10 @@ class streaming_newton : public rule_base<Real, M, detail::streaming_sums<Real, 
     const double prior = static_cast<double>(options.prior);
     const double mean = static_cast<double>(of.f) / n;  // in the unit of t
     double kappa[M];
+    double total = mean;
     for (int k = 0, at = 0; k < M; ++k) {
-      for (int l = 0; l <= k; ++l, ++at) a[k][l] = a[l][k] = static_cast<double>(of.h[at]);
-      b[k] = static_cast<double>(of.g[k]);
+      for (int l = 0; l <= k; ++l, ++at) total += a[k][l] = a[l][k] = static_cast<double>(of.h[at]);
+      total += b[k] = static_cast<double>(of.g[k]);
       kappa[k] = 1;
       const double start = static_cast<double>(options.start[k]);
       if (!(prior > 0) || !(start > 0)) continue;
@@ -127,6 +131,10 @@ class streaming_newton : public rule_base<Real, M, detail::streaming_sums<Real, 
       const double s = prior * power_score(mean, static_cast<double>(exponent())).value;
       a[k][k] += s / start;
       b[k] += s;
+    }
+    if (!is_finite(total)) {
+      of = sums{};
+      return this->end(rule_status::not_converged);
     }
     double map_memory[floored_simplex::doubles(M)];
     int coordinates[M];
@@ -146,13 +154,17 @@ class streaming_newton : public rule_base<Real, M, detail::streaming_sums<Real, 
     return this->end(status);
   }
 
-  /// Adds what another state has observed, each observation counting `weight` times.
-  PHIMIS_HOST_DEVICE void merge(const streaming_newton& other, Real weight = Real(1)) noexcept {
+  /// Adds what another state has observed.
+  PHIMIS_HOST_DEVICE void merge(const streaming_newton& other) noexcept {
     this->state_.counters.merge(other.state_.counters);
-    add(other.memory(), weight);
+    pool(other.state_, 1);
   }
-  /// The same from what was kept of another state; its counts of observations stay apart.
-  PHIMIS_HOST_DEVICE void add(sums theirs, Real weight = Real(1)) noexcept {
+
+  /// Learns from a neighbour's state as if each of its observations counted `weight` times: how alike the two are is for
+  /// the host to say. The counters stay those of this rule.
+  PHIMIS_HOST_DEVICE void pool(const typename streaming_newton::state_type& neighbour, Real weight) noexcept {
+    PHIMIS_EXPECTS(weight >= 0);
+    sums theirs = neighbour.memory;
     sums& of = this->memory();
     if (theirs.reference > of.reference) refer_to(theirs.reference, of);
     if (theirs.reference > 0) refer_to(of.reference, theirs);

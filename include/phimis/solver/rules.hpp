@@ -10,6 +10,7 @@
 #include <phimis/core/rule.hpp>
 #include <phimis/core/second_order.hpp>
 #include <phimis/core/sigma_proportional.hpp>
+#include <phimis/core/streaming_newton.hpp>
 #include <phimis/solver/table.hpp>
 #include <phimis/validate.hpp>
 
@@ -55,6 +56,22 @@ exact_minimiser<Divergence, table<Real, 2>> exact_rule(const Divergence& diverge
                                                        const rule_options<Real, 2>& options = {},
                                                        control_variate variate = control_variate::on) {
   return exact_rule<2, Divergence, Real>(divergence, options, variate);
+}
+
+/// Newton's method on γ-moments from sums alone; `memory` is what is left of older sums at each update.
+///
+///     auto rule = phimis::streaming_rule<5>(phimis::kullback_leibler{}, {.prior = 2}, 0.5);
+template <int M, divergence Divergence, class Real = double>
+streaming_newton<Divergence, Real, M> streaming_rule(const Divergence& divergence,
+                                                     const rule_options<Real, M>& options = {},
+                                                     Real memory = Real(1)) {
+  validate(divergence);
+  require(divergence.exponent() > 0, "divergence", "must have a positive power of f/p as its score",
+          divergence.exponent());
+  validate(options);
+  validate_equal_costs(options);
+  require(is_density(memory) && memory <= 1, "memory", "must lie in [0, 1]", memory);
+  return streaming_newton<Divergence, Real, M>(divergence, options, memory);
 }
 
 /// Counts in proportion to each technique's spread under `count_independent` weights.
