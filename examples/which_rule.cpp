@@ -64,6 +64,8 @@ int main(int argc, char** argv) {
   measure("newton_rule, Kullback–Leibler, the paper's", newton_rule(kullback_leibler{}, newton_form::paper));
   measure("newton_rule, Kullback–Leibler", newton_rule(kullback_leibler{}));
   measure("newton_rule, χ²", newton_rule(chi_squared{}));
+  measure("streaming_rule, Kullback–Leibler", streaming_rule<2>(kullback_leibler{}));
+  measure("streaming_rule, χ²", streaming_rule<2>(chi_squared{}));
   measure("linear_rule", linear_rule<2>());
   measure("exact_rule, Kullback–Leibler", exact_rule(kullback_leibler{}));
   measure("exact_rule, χ², prior 1", exact_rule(chi_squared{}, {.prior = 1}));

@@ -34,6 +34,17 @@ __device__ float of_three(const Divergence& divergence) {
   return exact.fractions()[0] + static_cast<float>(exact.gap());
 }
 
+template <class Divergence>
+__device__ float streaming_by(const Divergence& divergence) {
+  streaming_newton<Divergence, float, 5> rule(divergence);
+  rule.observe({1, {{1, 1, 2, 3, 1}}, 1, 0});
+  rule.update();
+  rule.pool(rule.state(), 2);
+  const auto kept = rule.state();
+  rule.resume(kept);
+  return rule.fractions()[0];
+}
+
 template <class Heuristic>
 __device__ double contribution_by(const Heuristic& heuristic) {
   const fractions<double, 3> alpha = equal_fractions<double, 3>();
@@ -55,6 +66,7 @@ __global__ void all_of(double* out) {
          rules_of(pearson_vajda{3}) + rules_of(reversed<tsallis>{}) + rules_of(reversed<kullback_leibler>{}) +
          rules_of(reversed<hellinger>{}) + rules_of(reversed<total_variation>{}) +
          rules_of(reversed<pearson_vajda>{});
+  *out += streaming_by(tsallis{1.5}) + streaming_by(kullback_leibler{}) + streaming_by(chi_squared{});
   *out += contribution_by(balance{}) + contribution_by(power{}) + contribution_by(power{3}) +
           contribution_by(cutoff{}) + contribution_by(maximum{});
 

@@ -36,15 +36,14 @@ struct streaming_sums {
 /// Newton's method on the γ-moments of any number of techniques, from sums alone: O(M²) memory, all observations in use.
 ///
 ///     G_k  = Σ_j p_kj/q_j t_j^γ,   H_kl = Σ_j p_kj p_lj/(q_j p_j) t_j^γ,   t_j = |f_j|/p_j,   p_j = Σ_k α_k p_kj
-///     α   ← argmin ½ αᵀHα − (1 + 1/γ) Gᵀα,   α_k ≥ max(floor_k, α_k/4),   Σ α_k = 1
+///     α   ← argmin ½ αᵀHα − (1 + 1/γ) Gᵀα,   α_k ≥ floor_k,   Σ α_k = 1
 ///
 /// each observation at the fractions of its time. Since Σ_l H_kl α_l = G_k, its second order around these is the same
 /// quadratic form whatever they were: sums over many fractions, and over many states, are one quadratic. At each update
 /// older sums are multiplied by `memory`: 0 is the paper's rule, this batch only; near 1 is least noise, but models around
 /// fractions that were bad stay. An update costs no pass over samples: many small ones in a row walk to the optimum.
 ///
-/// For two techniques and one batch drawn at q = p it is the step of `newton_raphson`. A fraction falls to a quarter of
-/// itself at most: a step to a floor starves the technique whose samples would have said so.
+/// For two techniques and one batch drawn at q = p it is the step of `newton_raphson`.
 ///
 /// Source   T Eqs. 30–32, for M techniques; floors as constraints.
 /// Requires a divergence of the power family, γ > 0; 0 <= memory <= 1.
@@ -139,12 +138,8 @@ class streaming_newton : public rule_base<Real, M, detail::streaming_sums<Real, 
     double map_memory[floored_simplex::doubles(M)];
     int coordinates[M];
     floored_simplex on(M, kappa, map_memory, coordinates);
-    const auto& from = this->state_.fractions;
     on.constrain([&](int k) { return options.frozen[k]; },
-                 [&](int k) {
-                   if (options.frozen[k]) return options.start[k];
-                   return from[k] / 4 > options.floors[k] ? from[k] / 4 : options.floors[k];
-                 });
+                 [&](int k) { return options.frozen[k] ? options.start[k] : options.floors[k]; });
     rule_status status = rule_status::updated;
     if (on.has_freedom()) {
       status = minimise_quadratic(a, b, 1 + 1 / static_cast<double>(exponent()), on, this->state_.fractions);
