@@ -2,6 +2,7 @@
 #ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_ARGUMENTS_HPP
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_ARGUMENTS_HPP
 
+#include <direct_lighting/method_name.hpp>
 #include <direct_lighting/scene.hpp>
 
 #include <CLI/CLI.hpp>
@@ -28,12 +29,17 @@ struct arguments {
   std::vector<std::string> methods;
   scene_options scene;
   std::string output = "reproduction";
-  std::int64_t reference_samples = 10000;
+  std::int64_t reference_samples = 50000;  // as T's
+
+  bool table1 = false, never_worse = false, convergence = false, overhead = false;
+  bool quick = false, full = false;
+
+  /// Whether a study is asked for in place of the methods of one sampler and one number of techniques.
+  bool studies() const { return table1 || never_worse || convergence || overhead; }
 };
 
-/// Adds the options to a program that knows these methods; without --method, all.
-inline void add_options(CLI::App& app, arguments& to, const std::vector<std::string>& methods) {
-  to.methods = methods;
+/// Adds the options to a program. After parsing, settle() is called.
+inline void add_options(CLI::App& app, arguments& to) {
   const int largest = 4096;
   app.add_option("--width", to.width, "pixels")->capture_default_str()->check(CLI::Range(1, largest));
   app.add_option("--height", to.height, "pixels")->capture_default_str()->check(CLI::Range(1, largest));
@@ -55,7 +61,9 @@ inline void add_options(CLI::App& app, arguments& to, const std::vector<std::str
   app.add_option("--techniques", to.techniques, "lights and BRDF, or each light and BRDF")
       ->capture_default_str()
       ->check(CLI::IsMember({2, 5}));
-  app.add_option("--method", to.methods, "a list; all by default")->delimiter(',')->check(CLI::IsMember(methods));
+  app.add_option("--method", to.methods,
+                 "a list of brdf, light, equal, default; with two techniques also tsallis:G, newton:G, linear")
+      ->delimiter(',');
   app.add_option_function<std::vector<float>>(
          "--exponents",
          [&to](const std::vector<float>& given) { std::copy_n(given.begin(), 4, to.scene.exponents.begin()); },
@@ -68,6 +76,34 @@ inline void add_options(CLI::App& app, arguments& to, const std::vector<std::str
   app.add_option("--reference-samples", to.reference_samples, "samples per pixel of the reference, which is kept")
       ->capture_default_str()
       ->check(CLI::Range(std::int64_t{5}, std::int64_t{100000000}));
+  app.add_flag("--table1", to.table1, "T's Table 1, and more: both samplers, both numbers of techniques");
+  app.add_flag("--never-worse", to.never_worse,
+               "the default against equal counts over many scenes and sample counts");
+  app.add_flag("--convergence", to.convergence, "figures of errors against samples and seconds");
+  app.add_flag("--overhead", to.overhead, "what rules cost, in time and in memory");
+  auto* const quick = app.add_flag("--quick", to.quick, "small images, few runs");
+  app.add_flag("--full", to.full, "600 by 600 pixels, 30 runs, as T; the whole grid of --never-worse")
+      ->excludes(quick);
+}
+
+/// Fills in what was not given.   Errors std::invalid_argument for methods that there are not.
+inline void settle(const CLI::App& app, arguments& to) {
+  const auto unless_given = [&](const char* option, auto& value, auto otherwise) {
+    if (app.get_option(option)->count() == 0) value = otherwise;
+  };
+  if (to.quick) {
+    unless_given("--width", to.width, 48);
+    unless_given("--height", to.height, 48);
+    unless_given("--runs", to.runs, 2);
+    unless_given("--reference-samples", to.reference_samples, 2000);
+  }
+  if (to.full) {
+    unless_given("--width", to.width, 600);
+    unless_given("--height", to.height, 600);
+    unless_given("--runs", to.runs, 30);
+  }
+  unless_given("--method", to.methods, methods_of(to.techniques));
+  for (const std::string& method : to.methods) parse_method(method);
 }
 
 }  // namespace direct_lighting
