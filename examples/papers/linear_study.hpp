@@ -95,7 +95,7 @@ linear_limit<M> limit_of(const phimis::analysis::problem<M>& on) {
   phimis::projection_sums<double, M> projection;
   const auto rows = on.rows();
   for (std::ptrdiff_t j = 0; j < rows.size(); ++j) projection.add(rows[j]);
-  projection.fit(all, options.start, 0, tau);
+  projection.fit(all, options.start, 0, 1, tau);
   result.projected = all.at(tau);
   return result;
 }
