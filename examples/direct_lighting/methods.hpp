@@ -14,6 +14,7 @@
 #include <phimis/core/table.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -43,7 +44,9 @@ struct view {
 /// Fewer iterations where they would have no sample for each technique.
 inline learning_plan papers_plan(std::int64_t samples, int techniques, std::int64_t iterations) {
   iterations = std::min(iterations, samples / techniques);
-  learning_plan plan{.cell = 1, .batches = {static_cast<std::size_t>(iterations), {samples / iterations}}};
+  learning_plan plan;
+  plan.cell = 1;
+  plan.batches.assign(static_cast<std::size_t>(iterations), {samples / iterations});
   plan.batches.back().samples += samples % iterations;
   return plan;
 }

@@ -74,20 +74,21 @@ void print_overhead(const view& of, const char* sampler, std::int64_t samples, s
   const auto lit = std::count_if(of.points.pixels.begin(), of.points.pixels.end(),
                                  [](const shading_point& p) { return p.plate != shading_point::no_plate; });
   for (const contender& c : all) {
-    std::vector<double> shares;
-    for (std::size_t i = 0; i < c.seconds.size(); ++i) shares.push_back(1 - all[c.idle].seconds[i] / c.seconds[i]);
-    char share[30] = "";
-    if (c.bytes > 0) std::snprintf(share, sizeof share, "%.1f %%", 100 * median(shares));
-    std::printf("| %s | %d | %s | %s | %.1f | %s | %zu |\n", sampler, M, c.plan, c.name,
-                median(c.seconds) / static_cast<double>(lit * samples) * 1e9, share, c.bytes);
+    std::vector<double> learning;
+    for (std::size_t i = 0; i < c.seconds.size(); ++i) learning.push_back(c.seconds[i] - all[c.idle].seconds[i]);
+    const double unit = 1e-9 * static_cast<double>(lit * samples);
+    const double time = median(c.seconds), rule = median(learning);
+    char share[60] = " | ";
+    if (c.bytes > 0) std::snprintf(share, sizeof share, "%.1f | %.1f %%", rule / unit, 100 * rule / time);
+    std::printf("| %s | %d | %s | %s | %.1f | %s | %zu |\n", sampler, M, c.plan, c.name, time / unit, share, c.bytes);
   }
 }
 
 inline void print_overheads(const view& of, std::int64_t samples, std::uint64_t seed, int repetitions) {
   std::printf(
       "\nTime of a sample with equal counts, and the share of it that a rule takes to observe and update; %d "
-      "repetitions\n\n| sampler | techniques | plan | rule | ns | observe + update | bytes of a state |\n"
-      "|---|---|---|---|---|---|---|\n",
+      "repetitions\n\n| sampler | techniques | plan | rule | ns | observe + update, ns | share | bytes of a state |\n"
+      "|---|---|---|---|---|---|---|---|\n",
       repetitions);
   print_overhead<2, area_sampling>(of, "area", samples, seed, repetitions);
   print_overhead<5, area_sampling>(of, "area", samples, seed, repetitions);
