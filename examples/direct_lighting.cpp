@@ -2,12 +2,15 @@
 // Direct lighting of Veach's plates, T Sec. 8 and L Sec. 6.2: images, errors and times of sampling methods, each with the
 // same number of samples per pixel. Ratios are to equal counts of two techniques with the same light sampler.
 //
-// test: --quick --table1 --never-worse
+// test: --quick --table1 --never-worse --convergence --overhead
 #include <direct_lighting/arguments.hpp>
+#include <direct_lighting/convergence.hpp>
 #include <direct_lighting/image_files.hpp>
 #include <direct_lighting/never_worse.hpp>
+#include <direct_lighting/overhead.hpp>
 #include <direct_lighting/reference.hpp>
 #include <direct_lighting/study.hpp>
+#include <papers/gnuplot.hpp>
 #include <papers/output_folder.hpp>
 #include <render/png.hpp>
 #include <render/tone_map.hpp>
@@ -81,22 +84,30 @@ bool compare_methods(const study& plates, const arguments& given, const papers::
 int run(const arguments& given) {
   const scene plates(given.scene);
   for (const configuration& one : table_of(given, given.sampler)) check(one);
+  if (given.convergence) papers::require_gnuplot();
   const papers::output_folder folder(given.output);
   const papers::output_folder references(folder.path() / "references");
   bool good = true;
-  if (given.table1 || !given.studies()) {
+  const bool table = given.table1 || !given.studies();
+  if (table || given.convergence) {
     const papers::output_folder images(folder.path() / "images");
     const auto points = shading_points(plates, given.width, given.height, given.threads);
     const auto truth =
         reference(references.path(), given.scene, plates, points, given.reference_samples, given.threads);
     render::write_png(images.path() / "reference.png", render::tone_map(truth));
     const study of{{plates, points}, truth, given.runs, given.seed, given.threads};
-    good = compare_methods(of, given, folder, images) && good;
+    if (table) good = compare_methods(of, given, folder, images);
+    if (given.convergence) draw_convergence(of, papers::output_folder(folder.path() / "figures"));
+  }
+  if (given.overhead) {
+    const int size = given.quick ? 48 : 200;
+    print_overheads({plates, shading_points(plates, size, size, given.threads)}, given.samples, given.seed,
+                    given.quick ? 3 : 15);
   }
   if (given.never_worse) {
-    const never_worse_effort effort = given.quick  ? never_worse_effort{8, 24, 2000, 2000}
-                                      : given.full ? never_worse_effort{1}
-                                                   : never_worse_effort{8};
+    const never_worse_effort effort = given.quick  ? never_worse_effort{56, 8, 2000}
+                                      : given.full ? never_worse_effort{1, 30}
+                                                   : never_worse_effort{8, 30};
     good = never_worse(folder, references.path(), given, effort) && good;
   }
   return good ? 0 : 1;

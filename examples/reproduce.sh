@@ -5,12 +5,12 @@ set -eu
 
 usage="usage: examples/reproduce.sh [--quick|--full] [FOLDER]
 
-  FOLDER    where tables, figures and their data go; build/reproduction by default
+  FOLDER    where tables, figures, images and their data go; build/reproduction by default
   --quick   few repetitions: a check that everything runs
   --full    the papers' own protocol, repeated; without either, within ten minutes on two cores
   --help    this"
 
-programs="tsallis_figures linear_heuristic_figures variance_tables"
+programs="tsallis_figures linear_heuristic_figures variance_tables direct_lighting"
 effort=
 folder=
 for option; do
@@ -38,7 +38,9 @@ cmake --preset release </dev/null
 cmake --build --preset examples </dev/null
 mkdir -p "$folder"
 for program in $programs; do
+  studies=
+  [ "$program" != direct_lighting ] || studies="--table1 --overhead --convergence --never-worse"
   # shellcheck disable=SC2086  # no effort, no argument
-  "build/release/examples/$program" --output "$folder" $effort </dev/null
+  "build/release/examples/$program" --output "$folder" $studies $effort </dev/null
 done
 echo "reproduced into $folder"

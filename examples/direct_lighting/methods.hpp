@@ -14,6 +14,7 @@
 #include <phimis/core/table.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -43,7 +44,9 @@ struct view {
 /// Fewer iterations where they would have no sample for each technique.
 inline learning_plan papers_plan(std::int64_t samples, int techniques, std::int64_t iterations) {
   iterations = std::min(iterations, samples / techniques);
-  learning_plan plan{.cell = 1, .batches = {static_cast<std::size_t>(iterations), {samples / iterations}}};
+  learning_plan plan;
+  plan.cell = 1;
+  plan.batches.assign(static_cast<std::size_t>(iterations), {samples / iterations});
   plan.batches.back().samples += samples % iterations;
   return plan;
 }
@@ -96,6 +99,11 @@ method learning_method(const view& of, const Rule& rule, const learning_plan& pl
   };
 }
 
+template <int M>
+auto make_linear_rule() {
+  return phimis::linear_heuristic<float, M, phimis::negative_fractions::drop_most_negative>(options_of<M>(0.01f, 0));
+}
+
 /// Tsallis-γ on all samples of a pixel.
 template <int Capacity, class LightSampling>
 method tsallis_method(const view& of, double gamma, std::int64_t samples) {
@@ -114,8 +122,7 @@ method papers_method(const view& of, const method_name& name, std::int64_t sampl
         papers_plan(samples, 2, 5));
   }
   if (name.family == "linear") {
-    using rule = phimis::linear_heuristic<float, 2, phimis::negative_fractions::drop_most_negative>;
-    return learning_method<2, LightSampling>(of, rule(options_of<2>(0.01f, 0)), papers_plan(samples, 2, 10));
+    return learning_method<2, LightSampling>(of, make_linear_rule<2>(), papers_plan(samples, 2, 10));
   }
   if (samples <= 64) return tsallis_method<64, LightSampling>(of, name.gamma, samples);
   return tsallis_method<1024, LightSampling>(of, name.gamma, samples);
