@@ -470,7 +470,7 @@ TEST_CASE("Samples that find no room are in the sums alone") {
 
 TEST_CASE("The sums take as much memory as the documentation says") {
   constexpr std::size_t base = sizeof(phimis::fixed_fractions<double, 4>);
-  // n, P, F and two units; the projection's G, b, n and unit.
+  // P, F and two units; the projection's G, b and unit.
   CHECK(sizeof(dropping<double, 4>) <= base + 8 * (4 + 16 + 4 + 2) + 8);
   CHECK(sizeof(projecting<double, 4>) == base + 8 * (16 + 4 + 2) + 8 * (4 * 10 + 16 + 1));
 }
