@@ -28,6 +28,8 @@ struct planned_batch {
   double weight = 1;
   /// Of the pixels of a cell that draw this batch; the others draw its samples with their next one.
   double share = 1;
+  /// The rule observes every so manieth pixel of this batch: each costs time, and a cell has many.
+  std::size_t observed = 1;
 };
 
 /// When and where fractions are learnt.
@@ -83,6 +85,7 @@ void render_cell(const render::image<shading_point>& points, const techniques<M,
         for (int k = 0; k < M; ++k) alpha[k] = static_cast<float>(n[k]) / static_cast<float>(samples);
       }
       const std::uint32_t pixel = pixels[at];
+      const bool observed = i % batch.observed == 0;
       render::rgb sum{};
       for (int k = 0; k < M; ++k) {
         for (std::int64_t j = 0; j < n[k]; ++j) {
@@ -90,7 +93,7 @@ void render_cell(const render::image<shading_point>& points, const techniques<M,
           const light_sample<M> x = all.draw(points.pixels[pixel], k, u[0], u[1], u[2]);
           const float q = phimis::mixture(alpha, x.pdfs);
           if (q > 0) sum = sum + x.f * (1 / q);
-          rule.observe({render::luminance(x.f), x.pdfs, q, k});
+          if (observed) rule.observe({render::luminance(x.f), x.pdfs, q, k});
         }
       }
       // The weighted mean of the batches so far.

@@ -60,7 +60,8 @@ template <int M>
 learning_plan recommended_plan(std::int64_t samples) {
   learning_plan plan{.cell = 16, .pixels_per_update = 16, .batches = {{samples}}};
   const std::int64_t pilot = std::max<std::int64_t>(M, samples / 10);
-  if (samples >= 2 * M) plan.batches = {{pilot, M == 2 ? 0.8 : 0.3, 0.25}, {samples - pilot}};
+  if (samples >= 2 * M)
+    plan.batches = {{pilot, M == 2 ? 0.8 : 0.3, 0.25}, {.samples = samples - pilot, .observed = 3}};
   return plan;
 }
 template <int M>
