@@ -107,7 +107,7 @@ int run(const arguments& given) {
                     given.quick ? 3 : 15);
   }
   if (given.never_worse) {
-    const never_worse_effort effort = given.quick  ? never_worse_effort{56, 8, 2000}
+    const never_worse_effort effort = given.quick  ? never_worse_effort{56, 4, 2000}
                                       : given.full ? never_worse_effort{1, 30}
                                                    : never_worse_effort{8, 30};
     good = never_worse(folder, references.path(), given, effort) && good;
