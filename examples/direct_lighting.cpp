@@ -83,12 +83,14 @@ bool compare_methods(const study& plates, const arguments& given, const papers::
 
 int run(const arguments& given) {
   const scene plates(given.scene);
-  for (const configuration& one : table_of(given, given.sampler)) check(one);
+  const bool table = given.table1 || !given.studies();
+  for (const configuration& one : table_of(given, given.sampler)) {
+    if (table) check(one);
+  }
   if (given.convergence) papers::require_gnuplot();
   const papers::output_folder folder(given.output);
   const papers::output_folder references(folder.path() / "references");
   bool good = true;
-  const bool table = given.table1 || !given.studies();
   if (table || given.convergence) {
     const papers::output_folder images(folder.path() / "images");
     const auto points = shading_points(plates, given.width, given.height, given.threads);
@@ -105,7 +107,7 @@ int run(const arguments& given) {
                     given.quick ? 3 : 15);
   }
   if (given.never_worse) {
-    const never_worse_effort effort = given.quick  ? never_worse_effort{56, 8, 2000}
+    const never_worse_effort effort = given.quick  ? never_worse_effort{56, 4, 2000}
                                       : given.full ? never_worse_effort{1, 30}
                                                    : never_worse_effort{8, 30};
     good = never_worse(folder, references.path(), given, effort) && good;

@@ -74,10 +74,10 @@ void print_overhead(const view& of, const char* sampler, std::int64_t samples, s
   const auto lit = std::count_if(of.points.pixels.begin(), of.points.pixels.end(),
                                  [](const shading_point& p) { return p.plate != shading_point::no_plate; });
   for (const contender& c : all) {
-    std::vector<double> learning;
-    for (std::size_t i = 0; i < c.seconds.size(); ++i) learning.push_back(c.seconds[i] - all[c.idle].seconds[i]);
+    std::vector<double> of_rule;
+    for (std::size_t i = 0; i < c.seconds.size(); ++i) of_rule.push_back(c.seconds[i] - all[c.idle].seconds[i]);
     const double unit = 1e-9 * static_cast<double>(lit * samples);
-    const double time = median(c.seconds), rule = median(learning);
+    const double time = median(c.seconds), rule = median(of_rule);
     char share[60] = " | ";
     if (c.bytes > 0) std::snprintf(share, sizeof share, "%.1f | %.1f %%", rule / unit, 100 * rule / time);
     std::printf("| %s | %d | %s | %s | %.1f | %s | %zu |\n", sampler, M, c.plan, c.name, time / unit, share, c.bytes);
