@@ -49,7 +49,7 @@ void print_overhead(const view& of, const char* sampler, std::int64_t samples, s
     method draw;
     std::vector<double> seconds{};
   };
-  const learning_plan cells = recommended_plan<M>(samples);
+  const learning_plan cells = recommended_plan<M>(samples, of.points.width);
   const learning_plan pixels = papers_plan(samples, M, 10);
   const auto learning = [&](const auto& rule, const learning_plan& plan) {
     return learning_method<M, LightSampling>(of, rule, plan);

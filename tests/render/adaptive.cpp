@@ -124,7 +124,8 @@ TEST_CASE("Every pixel draws all its samples, and none more") {
   const auto points = shading_points(of, 40, 36, 1);
   const auto lit = std::count_if(points.pixels.begin(), points.pixels.end(),
                                  [](const shading_point& p) { return p.plate != shading_point::no_plate; });
-  for (const learning_plan& plan : {papers_plan(53, 2, 5), recommended_plan<2>(53), recommended_plan<5>(53)}) {
+  for (learning_plan plan : {papers_plan(53, 2, 5), recommended_plan<2>(53, 200), recommended_plan<5>(53, 200)}) {
+    for (planned_batch& batch : plan.batches) batch.observed = 1;
     std::int64_t observed = 0;
     render_adaptively(points, techniques<2, area_sampling>(of), counting_rule(observed), plan,
                       render::random_stream(1, 0), 1, nothing);
@@ -188,7 +189,7 @@ TEST_CASE("Pictures are finite and fractions lie on the simplex, with the fewest
 
 TEST_CASE("Plans draw every sample, and leave one for each technique in each batch") {
   for (const std::int64_t samples : {2, 3, 4, 5, 9, 10, 11, 49, 50, 1000}) {
-    const learning_plan papers = papers_plan(samples, 2, 5), recommended = recommended_plan<2>(samples);
+    const learning_plan papers = papers_plan(samples, 2, 5), recommended = recommended_plan<2>(samples, 200);
     for (const learning_plan& plan : {papers, recommended}) {
       CHECK(total(plan) == samples);
       for (const planned_batch& batch : plan.batches) CHECK(batch.samples >= 2);
@@ -197,8 +198,8 @@ TEST_CASE("Plans draw every sample, and leave one for each technique in each bat
     if (samples >= 10) CHECK(papers.batches.size() == 5);
     if (samples == 50) CHECK(papers.batches[0].samples == 10);
     if (samples < 5) continue;
-    CHECK(total(recommended_plan<5>(samples)) == samples);
-    for (const planned_batch& batch : recommended_plan<5>(samples).batches) CHECK(batch.samples >= 5);
+    CHECK(total(recommended_plan<5>(samples, 200)) == samples);
+    for (const planned_batch& batch : recommended_plan<5>(samples, 200).batches) CHECK(batch.samples >= 5);
   }
 }
 
