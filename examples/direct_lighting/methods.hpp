@@ -55,7 +55,7 @@ inline learning_plan papers_plan(std::int64_t samples, int techniques, std::int6
 ///
 /// Measured over exponents, plates, radii and 20 to 1000 samples (--never-worse): with two techniques there is little to
 /// win, the best fractions of every pixel have .83 of the error of equal counts, and much to lose: floors of .2. With five
-/// there is much to win, .42: floors are low, and the pilot, drawn at equal counts, weighs little. A cell must be small
+/// there is much to win, .42: floors are low, and the pilot, drawn at equal counts, weighs half. A cell must be small
 /// against what is seen: where highlights are a pixel wide and a cell is a quarter of the image, all techniques but the
 /// BRDF's are learnt, and the highlight is left to noise. Two techniques are learnt worse in small cells.
 template <int M>
@@ -63,7 +63,7 @@ learning_plan recommended_plan(std::int64_t samples, int width) {
   learning_plan plan{.cell = M > 2 && width < 128 ? 8 : 16, .pixels_per_update = 16, .batches = {{samples}}};
   const std::int64_t pilot = std::max<std::int64_t>(M, samples / 10);
   if (samples >= 2 * M)
-    plan.batches = {{pilot, M == 2 ? 0.8 : 0.3, 0.25}, {.samples = samples - pilot, .observed = 3}};
+    plan.batches = {{pilot, M == 2 ? 0.8 : 0.5, 0.25}, {.samples = samples - pilot, .observed = 3}};
   return plan;
 }
 template <int M>
@@ -79,7 +79,7 @@ phimis::rule_options<float, M> options_of(float floor, float prior) {
 }
 template <int M>
 recommended_rule<M> make_recommended_rule() {
-  return recommended_rule<M>({}, options_of<M>(M == 2 ? 0.2f : 0.02f, 10), 0.5f);
+  return recommended_rule<M>({}, options_of<M>(M == 2 ? 0.2f : 0.02f, 15), 0.7f);
 }
 
 template <int M, class LightSampling>
