@@ -57,7 +57,7 @@ inline learning_plan papers_plan(std::int64_t samples, int techniques, std::int6
 /// win, the best fractions of every pixel have .83 of the error of equal counts, and much to lose: floors of .2. With five
 /// there is much to win, .42: floors are low, and the pilot, drawn at equal counts, weighs little.
 /// Known to be worse than equal counts: five techniques on matt plates below large lights (exponent 5, radii × 3, one or
-/// two plates: RMSE up to × 1.13), where equal counts are nearly the best.
+/// two plates): RMSE up to × 1.13.
 template <int M>
 learning_plan recommended_plan(std::int64_t samples) {
   learning_plan plan{.cell = 16, .pixels_per_update = 16, .batches = {{samples}}};
