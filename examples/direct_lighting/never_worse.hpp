@@ -118,8 +118,8 @@ inline bool never_worse(const papers::output_folder& folder, const std::filesyst
     }
   }
   folder.write("never_worse.csv", csv);
-  std::printf("\nnever_worse.csv: %d rows; the highest ratio is %.4f of RMSE, %.4f of relMSE\n", rows, worst[0],
-              worst[1]);
+  std::printf("\nnever_worse.csv: %d of 768 rows; the highest ratio is %.4f of RMSE, %.4f of relMSE\n", rows,
+              worst[0], worst[1]);
   if (!worse.empty()) std::fprintf(stderr, "direct_lighting: worse than equal counts:\n%s", worse.c_str());
   return worse.empty();
 }
