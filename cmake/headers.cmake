@@ -25,6 +25,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/pair_sums.hpp
     phimis/core/power_terms.hpp
     phimis/core/projection_sums.hpp
+    phimis/core/quadratic_on_simplex.hpp
     phimis/core/rule.hpp
     phimis/core/second_order.hpp
     phimis/core/sigma_proportional.hpp
@@ -34,6 +35,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/solve_dense.hpp
     phimis/core/solve_nonnegative.hpp
     phimis/core/solve_pair.hpp
+    phimis/core/streaming_newton.hpp
     phimis/core/table.hpp
     phimis/core/technique_moments.hpp
     phimis/core/technique_sums.hpp

@@ -143,7 +143,9 @@ TEST_CASE("Tones and colours") {
   CHECK(render::srgb(0.001f) == Approx(0.01292f));
   CHECK(render::srgb(7) == Approx(1));
   CHECK(render::srgb(-1) == 0);
-  CHECK(render::tone_map(render::image<rgb>(1, 1, {0.25f, 0, 0}), 2)(0, 0).r == render::srgb(0.5f));
+  // A compiler's own power of a constant may differ from the library's in the last bit.
+  CHECK(render::tone_map(render::image<rgb>(1, 1, {0.25f, 0, 0}), 2)(0, 0).r ==
+        Approx(render::srgb(0.5f)).epsilon(1e-6));
   CHECK(render::colour_of(0) == rgb{0, 0, 1});
   CHECK(render::colour_of(0.25f) == rgb{0, 1, 1});
   CHECK(render::colour_of(0.5f) == rgb{0, 1, 0});
