@@ -172,8 +172,7 @@ class row_minimisation {
       kappa_[k] = wanted_.variate == control_variate::on && kappa_[k] > 0 ? n / kappa_[k] : 1;
       if (!detail::is_variance<Divergence>::value) kappa_[k] /= static_cast<double>(wanted_.costs[k]);
     }
-    simplex_.constrain([&](int k) { return wanted_.frozen[k] || silent_[k] != 0; },
-                       [&](int k) { return fixed(k); });
+    simplex_.constrain([&](int k) { return wanted_.frozen[k] || silent_[k] != 0; }, [&](int k) { return fixed(k); });
     double sum = 0;
     for (int k = 0; k < rows_.m; ++k) sum += static_cast<double>(wanted_.start[k]) / kappa_[k];
     for (int k = 0; k < rows_.m; ++k) prior_shares_[k] = static_cast<double>(wanted_.start[k]) / kappa_[k] / sum;
@@ -201,17 +200,17 @@ class row_minimisation {
       if (has_sharp_kink(divergence_)) return solve_kinked();
     }
     auto problem = convex_problem(divergence_);
-    settle(problem);
     // A sixteenth of many rows tells where to start: all rows are then read three or four times, not ten.
     constexpr int every = 16;
     const bool many = rows_.n >= every * 32 * static_cast<std::ptrdiff_t>(rows_.m < 8 ? 8 : rows_.m);
     simplex_solution found;
     if (many) {
       problem.read_every(every);
+      settle(problem);
       add(found, solve(problem, 1e-4));
       problem.read_every(1);
-      settle(problem);
     }
+    settle(problem);
     add(found, solve(problem, 4 * rounding, many ? 0 : 2));
     // Scores may change by many orders of magnitude on the way: the unit of the end is not that of the start.
     for (int again = 0; again < 4 && !(found.residual <= acceptable); ++again) {
@@ -261,8 +260,8 @@ class row_minimisation {
 
   PHIMIS_HOST_DEVICE variance_on_simplex<Real> variance_problem(sampling_model model) noexcept {
     const double prior = static_cast<double>(wanted_.prior) * mean_ * mean_ / mass();
-    return variance_on_simplex<Real>(model, rows_, simplex_, kappa_, priced() ? wanted_.costs : nullptr, unit_, mass(),
-                                     prior, prior_shares_, variance_memory_);
+    return variance_on_simplex<Real>(model, rows_, simplex_, kappa_, priced() ? wanted_.costs : nullptr, unit_,
+                                     mass(), prior, prior_shares_, variance_memory_);
   }
 
   PHIMIS_HOST_DEVICE simplex_solution solve_variance(sampling_model model) noexcept {

@@ -94,10 +94,8 @@ class mixture_block_sums {
       using V = decltype(lane);
       score_block<Real> block;
       lambda += fill<V>(first, count, block);
-      for (int k = 0; k < rows_.m; ++k) gradient[k] += dot<V>(rows_.y[k] + first, block.a, count);
-      if constexpr (Scores::changes_sign) {
-        for (int k = 0; k < rows_.m; ++k) sizes[k] += dot<V>(rows_.y[k] + first, block.c, count);
-      }
+      add_dots<V>(first, block.a, count, gradient);
+      if constexpr (Scores::changes_sign) add_dots<V>(first, block.c, count, sizes);
     });
     for (int k = 0; k < rows_.m && !Scores::changes_sign; ++k)
       sizes[k] = gradient[k] < 0 ? -gradient[k] : gradient[k];
@@ -155,6 +153,7 @@ class mixture_block_sums {
 
  private:
   static constexpr Real tiny = sizeof(Real) == 8 ? Real(1e-300) : Real(1e-37);
+  static constexpr int together = 4;  // columns read at once: a block's sums stay in registers
 
   template <class Body>
   PHIMIS_HOST_DEVICE void for_blocks(const Body& body) const noexcept {
@@ -176,11 +175,28 @@ class mixture_block_sums {
                               Real* x) const noexcept {
     constexpr int width = static_cast<int>(sizeof(V) / sizeof(Real));
     for (int i = 0; i < count; i += width) store<V>(x + i, V{} + least);
+    const Real* y[together];
+    Real weight[together];
+    int pending = 0;
     for (int k = 0; k < rows_.m; ++k) {
       if (weights[k] == 0) continue;
-      const Real weight = static_cast<Real>(weights[k]);
-      const Real* const y = rows_.y[k] + first;
-      for (int i = 0; i < count; i += width) store<V>(x + i, load<V>(x + i) + weight * load<V>(y + i));
+      y[pending] = rows_.y[k] + first;
+      weight[pending++] = static_cast<Real>(weights[k]);
+      if (pending < together) continue;
+      add_columns<V, together>(y, weight, count, x);
+      pending = 0;
+    }
+    for (int i = 0; i < pending; ++i) add_columns<V, 1>(y + i, weight + i, count, x);
+  }
+
+  /// x += Σ weight_k y_k of so many columns
+  template <class V, int Columns>
+  PHIMIS_HOST_DEVICE static void add_columns(const Real* const* y, const Real* weight, int count, Real* x) noexcept {
+    constexpr int width = static_cast<int>(sizeof(V) / sizeof(Real));
+    for (int i = 0; i < count; i += width) {
+      V sum = load<V>(x + i);
+      for (int k = 0; k < Columns; ++k) sum += weight[k] * load<V>(y[k] + i);
+      store<V>(x + i, sum);
     }
   }
 
@@ -205,12 +221,24 @@ class mixture_block_sums {
     return sum_of_lanes<Real>(lambda);
   }
 
+  /// sums[k] += Σ_j y_kj a_j of every technique
   template <class V>
-  PHIMIS_HOST_DEVICE static double dot(const Real* y, const Real* a, int count) noexcept {
+  PHIMIS_HOST_DEVICE void add_dots(std::ptrdiff_t first, const Real* a, int count, double* sums) const noexcept {
+    int k = 0;
+    for (; k + together <= rows_.m; k += together) add_dots<V, together>(rows_.y + k, first, a, count, sums + k);
+    for (; k < rows_.m; ++k) add_dots<V, 1>(rows_.y + k, first, a, count, sums + k);
+  }
+
+  template <class V, int Columns>
+  PHIMIS_HOST_DEVICE static void add_dots(const Real* const* y, std::ptrdiff_t first, const Real* a, int count,
+                                          double* sums) noexcept {
     constexpr int width = static_cast<int>(sizeof(V) / sizeof(Real));
-    V sum{};
-    for (int i = 0; i < count; i += width) sum += load<V>(y + i) * load<V>(a + i);
-    return sum_of_lanes<Real>(sum);
+    V sum[Columns] = {};
+    for (int i = 0; i < count; i += width) {
+      const V factor = load<V>(a + i);
+      for (int k = 0; k < Columns; ++k) sum[k] += factor * load<V>(y[k] + first + i);
+    }
+    for (int k = 0; k < Columns; ++k) sums[k] += sum_of_lanes<Real>(sum[k]);
   }
 
   template <class V>
