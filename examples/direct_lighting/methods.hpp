@@ -57,20 +57,19 @@ inline learning_plan papers_plan(std::int64_t samples, int techniques, std::int6
 /// win, the best fractions of every pixel have .83 of the error of equal counts, and much to lose: floors of .2. With five
 /// there is much to win, .42: floors are low, and the pilot, drawn at equal counts, weighs half. A cell must be small
 /// against what is seen: where highlights are a pixel wide and a cell is a quarter of the image, all techniques but the
-/// BRDF's are learnt, and the highlight is left to noise. Two techniques are learnt worse in small cells.
-/// Known to be worse than equal counts: five techniques with cone sampling on one matt plate below large lights (exponent
-/// 5, radii × 3), by 1 to 8 % of RMSE. There each technique is nearly exact for its light, and equal counts are nearly the
-/// optimum of V[F], which is not that of the divergence.
+/// BRDF's are learnt, and the highlight is left to noise. Two techniques are learnt worse in small cells. Many techniques
+/// have far to go: they are updated often.
 template <int M>
 learning_plan recommended_plan(std::int64_t samples, int width) {
-  learning_plan plan{.cell = M > 2 && width < 128 ? 8 : 16, .pixels_per_update = 16, .batches = {{samples}}};
+  learning_plan plan{
+      .cell = M > 2 && width < 128 ? 8 : 16, .pixels_per_update = M > 2 ? 4 : 16, .batches = {{samples}}};
   const std::int64_t pilot = std::max<std::int64_t>(M, samples / 10);
   if (samples >= 2 * M)
     plan.batches = {{pilot, M == 2 ? 0.8 : 0.5, 0.25}, {.samples = samples - pilot, .observed = 3}};
   return plan;
 }
 template <int M>
-using recommended_rule = phimis::streaming_newton<phimis::kullback_leibler, float, M>;
+using recommended_rule = phimis::streaming_newton<phimis::chi_squared, float, M>;
 
 /// Options with the same floor for all techniques.
 template <int M>
@@ -82,7 +81,7 @@ phimis::rule_options<float, M> options_of(float floor, float prior) {
 }
 template <int M>
 recommended_rule<M> make_recommended_rule() {
-  return recommended_rule<M>({}, options_of<M>(M == 2 ? 0.2f : 0.02f, 15), 0.7f);
+  return recommended_rule<M>({}, options_of<M>(M == 2 ? 0.2f : 0.02f, 15), 0.6f);
 }
 
 template <int M, class LightSampling>

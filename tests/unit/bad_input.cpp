@@ -244,9 +244,9 @@ TEST_CASE("integrate refuses costs of a rule built by hand whose divergence know
   refuses([] { run({}, rule(phimis::total_variation{}, {.costs = {{1, 2}}})); }, "costs", "must be equal", "2");
 }
 
-TEST_CASE("A streaming rule takes a memory between 0 and 1, and a positive power") {
-  refuses([] { phimis::streaming_rule<2>(phimis::chi_squared{}, {}, -0.5); }, "memory", "must lie in [0, 1]", "-0.5");
-  refuses([] { phimis::streaming_rule<2>(phimis::chi_squared{}, {}, 1.5); }, "memory", "must lie in [0, 1]", "1.5");
+TEST_CASE("A streaming rule takes a retention between 0 and 1, and a positive power") {
+  refuses([] { phimis::streaming_rule<2>(phimis::chi_squared{}, {}, -0.5); }, "retention", "must lie in [0, 1]", "-0.5");
+  refuses([] { phimis::streaming_rule<2>(phimis::chi_squared{}, {}, 1.5); }, "retention", "must lie in [0, 1]", "1.5");
   refuses([] { phimis::streaming_rule<2>(phimis::reversed{phimis::chi_squared{}}); }, "divergence",
           "must have a positive power of f/p as its score", "-1");
   refuses([] { phimis::streaming_rule<2>(phimis::tsallis{-1}); }, "gamma", "must be finite and greater than 0", "-1");

@@ -41,25 +41,25 @@ class quadratic_problem {
   }
 
   PHIMIS_HOST_DEVICE void hessian(const int* support, int size, double* hessian) noexcept {
-    double raw[(M + 1) * (M + 1)] = {};
-    const double* const fixed = on_.fixed();
+    double raw[(M + 1) * (M + 1)];
+    const double* const fixed = on_.fixed();  // the last column
     const int order = size + (fixed != nullptr ? 1 : 0);
-    for (int i = 0; i < order; ++i) {
-      for (int j = 0; j < order; ++j) {
-        double sum = 0;
-        for (int k = 0; k < M; ++k) {
-          for (int l = 0; l < M; ++l) sum += column(support, size, i, k) * a_[k][l] * column(support, size, j, l);
-        }
-        raw[i * order + j] = sum;
-      }
+    double of_fixed = 0;
+    for (int k = 0; k < M && fixed != nullptr; ++k) of_fixed += fixed[k] * times_fixed(k);
+    for (int i = 0; i < size; ++i) {
+      const int k = on_.technique(support[i]);
+      for (int j = 0; j < size; ++j) raw[i * order + j] = a_[k][on_.technique(support[j])];
+      if (fixed != nullptr) raw[i * order + size] = raw[size * order + i] = times_fixed(k);
     }
+    if (fixed != nullptr) raw[order * order - 1] = of_fixed;
     on_.pull_back(raw, support, size, hessian);
   }
 
  private:
-  /// Technique i of the support, or, as the last column, the fixed fractions.
-  PHIMIS_HOST_DEVICE double column(const int* support, int size, int i, int k) const noexcept {
-    return i == size ? on_.fixed()[k] : on_.technique(support[i]) == k ? 1.0 : 0.0;
+  PHIMIS_HOST_DEVICE double times_fixed(int k) const noexcept {
+    double sum = 0;
+    for (int l = 0; l < M; ++l) sum += a_[k][l] * on_.fixed()[l];
+    return sum;
   }
 
   const double (&a_)[M][M];

@@ -58,20 +58,20 @@ exact_minimiser<Divergence, table<Real, 2>> exact_rule(const Divergence& diverge
   return exact_rule<2, Divergence, Real>(divergence, options, variate);
 }
 
-/// Newton's method on γ-moments from sums alone; `memory` is what is left of older sums at each update.
+/// Newton's method on γ-moments from sums alone; `retention` is what is left of older sums at each update.
 ///
 ///     auto rule = phimis::streaming_rule<5>(phimis::kullback_leibler{}, {.prior = 2}, 0.5);
 template <int M, divergence Divergence, class Real = double>
 streaming_newton<Divergence, Real, M> streaming_rule(const Divergence& divergence,
                                                      const rule_options<Real, M>& options = {},
-                                                     Real memory = Real(1)) {
+                                                     Real retention = Real(1)) {
   validate(divergence);
-  require(divergence.exponent() > 0, "divergence", "must have a positive power of f/p as its score",
-          divergence.exponent());
+  const double exponent = detail::streaming_exponent(divergence);
+  require(exponent > 0, "divergence", "must have a positive power of f/p as its score", exponent);
   validate(options);
   validate_equal_costs(options);
-  require(is_density(memory) && memory <= 1, "memory", "must lie in [0, 1]", memory);
-  return streaming_newton<Divergence, Real, M>(divergence, options, memory);
+  require(is_density(retention) && retention <= 1, "retention", "must lie in [0, 1]", retention);
+  return streaming_newton<Divergence, Real, M>(divergence, options, retention);
 }
 
 /// Counts in proportion to each technique's spread under `count_independent` weights.

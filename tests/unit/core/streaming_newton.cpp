@@ -11,6 +11,7 @@
 #include <phimis/core/streaming_newton.hpp>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <type_traits>
 #include <vector>
@@ -22,6 +23,8 @@ using phimis::tsallis;
 
 template <class Real, int M = 3>
 using streaming = phimis::streaming_newton<tsallis, Real, M>;
+template <class Real>
+using streaming_variance = phimis::streaming_newton<phimis::multi_sample_variance, Real, 3>;
 template <class Real>
 using observations = std::vector<phimis::observation<Real, 3>>;
 
@@ -79,6 +82,28 @@ TEMPLATE_TEST_CASE("Updates on the same observations, with no memory, walk to th
       CHECK(distance(rule.fractions(), best.fractions()) <= (std::is_same_v<TestType, float> ? 2e-3 : 1e-9));
     }
   }
+}
+
+TEMPLATE_TEST_CASE("Updates for V[F] walk to the fractions where it is least", "", float, double) {
+  using exact = phimis::exact_minimiser<phimis::multi_sample_variance, phimis::fixed_table<TestType, 3, 96>>;
+  const auto rough = [](double x) { return in_the_span(x) * (1.2 + 0.8 * std::sin(4 * x)); };
+  const auto signed_f = [](double x) { return in_the_span(x) + 1.5 * std::sin(7 * x); };  // means have signs
+  double apart = 0;
+  for (const auto& f : {std::function<double(double)>(falling), {rough}, {signed_f}}) {
+    const auto all = three_powers::observe<TestType>(f, {{20, 40, 30}}, 3);
+    streaming_variance<TestType> rule({}, {}, 0);
+    for (int step = 0; step < 200; ++step) rule = learnt(rule, all);
+    // From there, since there may be another local minimum.
+    phimis::rule_options<TestType, 3> options;
+    options.start = rule.fractions();
+    const exact best = learnt(exact({}, options, phimis::control_variate::off), all);
+    REQUIRE(best.status() == rule_status::local);
+    CHECK(distance(rule.fractions(), best.fractions()) <= (std::is_same_v<TestType, float> ? 2e-3 : 1e-9));
+    streaming<TestType> one_sample(tsallis{2}, {}, 0);
+    for (int step = 0; step < 12; ++step) one_sample = learnt(one_sample, all);
+    apart = std::fmax(apart, distance(one_sample.fractions(), best.fractions()));
+  }
+  CHECK(apart > 0.003);  // the optimum of V[ℱ] is another
 }
 
 TEMPLATE_TEST_CASE("Merged in any grouping, states learn the same; pooled with weight 2, as if seen twice", "", float,
