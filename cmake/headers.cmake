@@ -6,11 +6,13 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/config.hpp
     phimis/core/counts.hpp
     phimis/core/divergence.hpp
+    phimis/core/divergence_at.hpp
     phimis/core/estimator.hpp
     phimis/core/exact_minimiser.hpp
     phimis/core/finite.hpp
     phimis/core/fractions.hpp
     phimis/core/inverse_variance_fractions.hpp
+    phimis/core/kink.hpp
     phimis/core/limits.hpp
     phimis/core/linear_equations.hpp
     phimis/core/linear_heuristic.hpp

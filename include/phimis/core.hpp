@@ -6,11 +6,13 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/counts.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/estimator.hpp>
 #include <phimis/core/exact_minimiser.hpp>
 #include <phimis/core/finite.hpp>
 #include <phimis/core/fractions.hpp>
 #include <phimis/core/inverse_variance_fractions.hpp>
+#include <phimis/core/kink.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/linear_equations.hpp>
 #include <phimis/core/linear_heuristic.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bad data at construction: std::invalid_argument that names the parameter, the rule and the value.
 #include "catch.hpp"
+#include "refuses.hpp"
 
 #include <phimis/analysis/optimum.hpp>
 #include <phimis/analysis/problem.hpp>
@@ -10,7 +11,6 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -20,20 +20,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 const double not_a_number = std::numeric_limits<double>::quiet_NaN();
 using phimis::interval;
 using phimis::rule_options;
-
-template <class Action>
-void refuses(const Action& action, const std::string& parameter, const std::string& rule, const std::string& value) {
-  std::string message = "nothing was thrown";
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    message = error.what();
-  }
-  INFO(message);
-  const std::string wanted = "phimis: " + parameter + " " + rule;
-  CHECK(message.substr(0, wanted.size()) == wanted);
-  CHECK(message.find(", got " + value) != std::string::npos);
-}
 
 template <class Divergence>
 void no_rule_takes(const Divergence& divergence, const std::string& parameter, const std::string& rule,

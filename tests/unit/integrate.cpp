@@ -478,5 +478,7 @@ TEST_CASE("integrate() learns by a streaming rule nearly what the exact one lear
   const auto exact = phimis::integrate(f, three, options, phimis::exact_rule<3>(phimis::kullback_leibler{}));
   const auto streaming = phimis::integrate(f, three, options, phimis::streaming_rule<3>(phimis::kullback_leibler{}));
   CHECK(std::fabs(streaming.estimate - mu) < 5 * streaming.standard_error);
-  for (int k = 0; k < 3; ++k) CHECK(std::fabs(streaming.fractions[k] - exact.fractions[k]) < 0.1);
+  // The flat pdf is the mean of the others: only the slope of the mixture is determined.
+  const auto slope = [](const auto& result) { return result.fractions[1] - result.fractions[0]; };
+  CHECK(std::fabs(slope(streaming) - slope(exact)) < 0.1);
 }

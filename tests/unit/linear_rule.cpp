@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "catch.hpp"
+#include "refuses.hpp"
 
 #include <phimis/phimis.hpp>
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
@@ -17,15 +17,7 @@ using phimis::rule_options;
 
 void refuses(const rule_options<double, 3>& options, const std::string& parameter, const std::string& rule,
              const std::string& value) {
-  const auto check = [&](auto make) {
-    std::string message = "nothing was thrown";
-    try {
-      make();
-    } catch (const std::invalid_argument& error) {
-      message = error.what();
-    }
-    CHECK(message == "phimis: " + parameter + " " + rule + ", got " + value);
-  };
+  const auto check = [&](auto make) { ::refuses(make, parameter, rule, value); };
   check([&] { linear_rule<3>(options); });
   check([&] { linear_rule<3, negative_fractions::drop_most_negative>(options); });
   check([&] { linear_rule<3, negative_fractions::best_face>(options); });

@@ -2,6 +2,7 @@
 // solver/minimise.hpp: what it refuses, and what its options promise. That it minimises is proved by tests/hard.
 #include "catch.hpp"
 #include "random_problems.hpp"
+#include "refuses.hpp"
 
 #include <phimis/solver/minimise.hpp>
 
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -40,23 +40,9 @@ minimum solve(const minimise_options& options = {}) {
   return minimise(phimis::kullback_leibler{}, three.f, three.pdfs, three.q, options);
 }
 
-template <class Action>
-void refuses(const Action& action, const std::string& parameter, const std::string& rule, const std::string& value) {
-  std::string message = "nothing was thrown";
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    message = error.what();
-  }
-  INFO(message);
-  const std::string wanted = "phimis: " + parameter + " " + rule;
-  CHECK(message.substr(0, wanted.size()) == wanted);
-  CHECK(message.find(", got " + value) != std::string::npos);
-}
-
 void refuses(const minimise_options& options, const std::string& parameter, const std::string& rule,
              const std::string& value) {
-  refuses([&] { solve(options); }, parameter, rule, value);
+  ::refuses([&] { solve(options); }, parameter, rule, value);
 }
 
 double largest_difference(const VectorXd& a, const VectorXd& b) { return (a - b).cwiseAbs().maxCoeff(); }

@@ -5,6 +5,8 @@
 #include <phimis/analysis/problem.hpp>
 #include <phimis/analysis/variance.hpp>
 #include <phimis/concepts.hpp>
+#include <phimis/core/divergence_at.hpp>
+#include <phimis/core/kink.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/minimise_rows.hpp>
 #include <phimis/core/movable_techniques.hpp>

@@ -4,6 +4,7 @@
 
 #include <phimis/analysis/problem.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/limits.hpp>
 
 #include <cmath>

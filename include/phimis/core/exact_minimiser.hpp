@@ -4,6 +4,7 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/minimise_pair.hpp>
 #include <phimis/core/minimise_rows.hpp>
 #include <phimis/core/rule.hpp>

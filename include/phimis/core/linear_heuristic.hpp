@@ -93,7 +93,7 @@ class linear_heuristic : public rule_base<Real, M, detail::linear_memory<Real, M
   PHIMIS_HOST_DEVICE void observe(const observation<Real, M>& sample) {
     const int k = sample.technique;
     PHIMIS_EXPECTS(k >= 0 && k < M);
-    row<Real, M> row;
+    row<Real, M> row;  // which drop_most_negative only checks
     if (!this->admit(sample, row)) return;
     this->memory().sums.add(sample);
     if constexpr (Treatment == negative_fractions::project) this->memory().projection.add(row);

@@ -4,6 +4,8 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/divergence_at.hpp>
+#include <phimis/core/kink.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/minimise_rows.hpp>
 #include <phimis/core/pair_sums.hpp>

@@ -4,6 +4,8 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/divergence_at.hpp>
+#include <phimis/core/kink.hpp>
 #include <phimis/core/pack.hpp>
 #include <phimis/core/power_terms.hpp>
 

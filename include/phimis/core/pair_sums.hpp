@@ -4,6 +4,7 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/pack.hpp>
 #include <phimis/core/power_terms.hpp>
 #include <phimis/core/table.hpp>

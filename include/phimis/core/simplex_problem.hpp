@@ -4,6 +4,7 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/mixture_sums.hpp>
 

@@ -3,6 +3,7 @@
 #define PHIMIS_CORE_TECHNIQUE_SUMS_HPP
 
 #include <phimis/core/config.hpp>
+#include <phimis/core/limits.hpp>
 #include <phimis/core/observation.hpp>
 
 namespace phimis {
@@ -11,7 +12,7 @@ namespace phimis {
 ///
 ///     P_ik = Σ_j p_i(X_kj),   F_k = Σ_j |f(X_kj)|
 ///
-/// Both in units of the largest Σp and |f| so far, so that no scale of them overflows.
+/// Each in a unit near the largest Σp and |f| so far, so that no scale of them overflows.
 ///
 /// Source L Eq. 18.
 template <class Real, int M>
@@ -24,17 +25,18 @@ class technique_sums {
     Real density = 0;
     for (int i = 0; i < M; ++i) density += sample.pdfs[i];
     const Real f = sample.f < 0 ? -sample.f : sample.f;
-    refer_to(density, f);
+    if (density * per_density_ > 1) lower(inverse(density), per_f_);
+    if (f * per_f_ > 1) lower(per_density_, inverse(f));
     if (density > 0) {
-      for (int i = 0; i < M; ++i) p_[i][k] += sample.pdfs[i] / density_unit_;
+      for (int i = 0; i < M; ++i) p_[i][k] += sample.pdfs[i] * per_density_;
     }
-    if (f > 0) f_[k] += f / f_unit_;
+    if (f > 0) f_[k] += f * per_f_;
   }
 
   PHIMIS_HOST_DEVICE void merge(const technique_sums& other) noexcept {
     technique_sums theirs = other;
-    theirs.refer_to(density_unit_, f_unit_);
-    refer_to(theirs.density_unit_, theirs.f_unit_);
+    theirs.lower(per_density_, per_f_);
+    lower(theirs.per_density_, theirs.per_f_);
     for (int k = 0; k < M; ++k) {
       f_[k] += theirs.f_[k];
       for (int i = 0; i < M; ++i) p_[i][k] += theirs.p_[i][k];
@@ -46,23 +48,30 @@ class technique_sums {
   PHIMIS_HOST_DEVICE double f(int k) const noexcept { return static_cast<double>(f_[k]); }
 
  private:
-  PHIMIS_HOST_DEVICE void refer_to(Real density, Real f) noexcept {
-    if (density > density_unit_) {
+  static constexpr Real most = 1 / (4 * smallest_normal<Real>);
+
+  /// 1/x, finite where x is tiny.
+  PHIMIS_HOST_DEVICE static Real inverse(Real x) noexcept { return x * most > 1 ? 1 / x : most; }
+
+  /// Takes larger units, where these are; sums without any are 0.
+  PHIMIS_HOST_DEVICE void lower(Real per_density, Real per_f) noexcept {
+    if (per_density < per_density_) {
+      const Real ratio = per_density / per_density_;
       for (int i = 0; i < M; ++i) {
-        for (int k = 0; k < M; ++k) p_[i][k] *= density_unit_ / density;
+        for (int k = 0; k < M; ++k) p_[i][k] *= ratio;
       }
-      density_unit_ = density;
+      per_density_ = per_density;
     }
-    if (f > f_unit_) {
-      for (int k = 0; k < M; ++k) f_[k] *= f_unit_ / f;
-      f_unit_ = f;
+    if (per_f < per_f_) {
+      for (int k = 0; k < M; ++k) f_[k] *= per_f / per_f_;
+      per_f_ = per_f;
     }
   }
 
   Real p_[M][M] = {};
   Real f_[M] = {};
-  Real density_unit_ = 0;
-  Real f_unit_ = 0;
+  Real per_density_ = most;  // the inverse of the unit, by which every sample is multiplied
+  Real per_f_ = most;
 };
 
 }  // namespace phimis

@@ -3,6 +3,7 @@
 #define PHIMIS_SOLVER_MINIMISE_HPP
 
 #include <phimis/concepts.hpp>
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/finite.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/minimise_rows.hpp>

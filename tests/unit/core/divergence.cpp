@@ -3,6 +3,8 @@
 #include "divergences.hpp"
 
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/divergence_at.hpp>
+#include <phimis/core/kink.hpp>
 
 #include <cmath>
 #include <limits>

@@ -3,6 +3,7 @@
 #include "divergences.hpp"
 #include "two_triangles.hpp"
 
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/exact_minimiser.hpp>
 
 #include <algorithm>

@@ -3,7 +3,9 @@
 #include "divergences.hpp"
 #include "random.hpp"
 
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/exact_minimiser.hpp>
+#include <phimis/core/kink.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "divergences.hpp"
 #include "random.hpp"
 
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/mixture_sums.hpp>
 
 #include <cmath>
