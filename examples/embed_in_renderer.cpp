@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <random>
 
-using rule = phimis::streaming_newton<phimis::kullback_leibler, float, 2>;
+using rule = phimis::streaming_newton<phimis::chi_squared, float, 2>;
 static_assert(sizeof(rule::state_type) <= 64, "per pixel");
 
 struct light_sample {
@@ -27,9 +27,9 @@ float image[pixels];
 
 int main() {
   phimis::rule_options<float, 2> options;
-  options.prior = 2;                                         // samples that equal counts are trusted like
-  options.floors = {{0.1f, 0.1f}};                           // what no evidence takes from a technique
-  rule learning(phimis::kullback_leibler{}, options, 0.5f);  // one for the whole image
+  options.prior = 2;                                    // samples that equal counts are trusted like
+  options.floors = {{0.1f, 0.1f}};                      // what no evidence takes from a technique
+  rule learning(phimis::chi_squared{}, options, 0.5f);  // one for the whole image
   for (auto& state : states) state = learning.state();
   std::mt19937 random(1);
   for (int b = 0; b < batches; ++b) {

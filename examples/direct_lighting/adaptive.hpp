@@ -107,20 +107,20 @@ void render_cell(const render::image<shading_point>& points, const techniques<M,
   }
 }
 
-/// The image of one run whose fractions are learnt by copies of a rule. `after_tile` is called after each tile, from any
-/// thread.
+/// The image of one run whose fractions are learnt by rule_of(plate), one rule for each cell. `after_tile` is called after
+/// each tile, from any thread.
 ///
 /// Requires in each batch a sample for each technique: with fewer, a technique that alone reaches a point has none.
-template <int M, class LightSampling, class Rule, class AfterTile>
+template <int M, class LightSampling, class RuleOf, class AfterTile>
 learnt_image<M> render_adaptively(const render::image<shading_point>& points, const techniques<M, LightSampling>& all,
-                                  const Rule& rule, const learning_plan& plan, const render::random_stream& random,
-                                  int threads, const AfterTile& after_tile) {
+                                  const RuleOf& rule_of, const learning_plan& plan,
+                                  const render::random_stream& random, int threads, const AfterTile& after_tile) {
   learnt_image<M> result{{points.width, points.height}, {points.width, points.height}};
   render::for_each_tile(points.width, points.height, threads, [&](const render::tile& t) {
     std::vector<std::uint32_t> cell;
-    const auto finish = [&] {
+    const auto finish = [&](int plate) {
       if (cell.empty()) return;
-      Rule learning = rule;
+      auto learning = rule_of(plate);
       render_cell(points, all, std::span<const std::uint32_t>(cell), learning, plan, random, result);
       cell.clear();
     };
@@ -132,7 +132,7 @@ learnt_image<M> render_adaptively(const render::image<shading_point>& points, co
               if (points(x, y).plate == plate) cell.push_back(static_cast<std::uint32_t>(y * points.width + x));
             }
           }
-          finish();
+          finish(plate);
         }
       }
     }

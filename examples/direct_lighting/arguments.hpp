@@ -62,7 +62,7 @@ inline void add_options(CLI::App& app, arguments& to) {
       ->capture_default_str()
       ->check(CLI::IsMember({2, 5}));
   app.add_option("--method", to.methods,
-                 "a list of brdf, light, equal, default; with two techniques also tsallis:G, newton:G, linear")
+                 "a list of brdf, light, equal, default, variance; with two techniques also tsallis:G, newton:G, linear")
       ->delimiter(',');
   app.add_option_function<std::vector<float>>(
          "--exponents",

@@ -28,7 +28,7 @@ struct method_name {
 
 /// Errors std::invalid_argument where no method has that name.
 inline method_name parse_method(const std::string& text) {
-  for (const char* const family : {"brdf", "light", "equal", "linear", "default"}) {
+  for (const char* const family : {"brdf", "light", "equal", "linear", "default", "variance"}) {
     if (text == family) return {text};
   }
   for (const std::string family : {"tsallis", "newton"}) {
@@ -40,7 +40,7 @@ inline method_name parse_method(const std::string& text) {
     throw std::invalid_argument("--method " + text + ": " + family + ":G needs a number G > 0");
   }
   throw std::invalid_argument("--method " + text +
-                              ": not one of brdf, light, equal, tsallis:G, newton:G, linear, default");
+                              ": not one of brdf, light, equal, tsallis:G, newton:G, linear, default, variance");
 }
 
 /// Errors std::invalid_argument where nothing can render this, in one line.

@@ -55,10 +55,8 @@ inline learning_plan papers_plan(std::int64_t samples, int techniques, std::int6
 ///
 /// Measured over exponents, plates, radii and 20 to 1000 samples (--never-worse): with two techniques there is little to
 /// win, the best fractions of every pixel have .83 of the error of equal counts, and much to lose: floors of .2. With five
-/// there is much to win, .42: floors are low, and the pilot, drawn at equal counts, weighs half. A cell must be small
-/// against what is seen: where highlights are a pixel wide and a cell is a quarter of the image, all techniques but the
-/// BRDF's are learnt, and the highlight is left to noise. Two techniques are learnt worse in small cells. Many techniques
-/// have far to go: they are updated often.
+/// there is much to win, .42: floors are low, the pilot, drawn at equal counts, weighs half, and updates are many, since
+/// they have far to go. A cell must be small against what is seen, and two techniques are learnt worse in small cells.
 template <int M>
 learning_plan recommended_plan(std::int64_t samples, int width) {
   learning_plan plan{
@@ -68,8 +66,6 @@ learning_plan recommended_plan(std::int64_t samples, int width) {
     plan.batches = {{pilot, M == 2 ? 0.8 : 0.5, 0.25}, {.samples = samples - pilot, .observed = 3}};
   return plan;
 }
-template <int M>
-using recommended_rule = phimis::streaming_newton<phimis::chi_squared, float, M>;
 
 /// Options with the same floor for all techniques.
 template <int M>
@@ -79,9 +75,17 @@ phimis::rule_options<float, M> options_of(float floor, float prior) {
   options.prior = prior;
   return options;
 }
-template <int M>
-recommended_rule<M> make_recommended_rule() {
-  return recommended_rule<M>({}, options_of<M>(M == 2 ? 0.2f : 0.02f, 15), 0.6f);
+
+/// The rule of a plate. V[F] takes the same settings, and has its own strengths (docs/embedding.md).
+///
+/// A lobe so narrow that a highlight is smaller than a pixel is not learnt from neighbours, who do not see it: the BRDF,
+/// which alone finds it, keeps more.
+template <int M, class Divergence = phimis::chi_squared>
+auto recommended_rule(float exponent, int width) {
+  auto options = options_of<M>(M == 2 ? 0.2f : 0.02f, 30);
+  const bool narrow = 2 * exponent > static_cast<float>(width) * static_cast<float>(width);
+  if (narrow) options.floors[M - 1] = M == 2 ? 0.3f : 0.1f;
+  return phimis::streaming_newton<Divergence, float, M>({}, options, 0.6f);
 }
 
 template <int M, class LightSampling>
@@ -91,17 +95,34 @@ method fixed_method(const view& of, const phimis::counts<M>& n) {
   };
 }
 
-template <int M, class LightSampling, class Rule>
-method learning_method(const view& of, const Rule& rule, const learning_plan& plan) {
-  return [of, rule, plan, all = techniques<M, LightSampling>(of.plates)](const auto& random, int threads,
-                                                                         const auto& after) {
-    auto learnt = render_adaptively(of.points, all, rule, plan, random, threads, after);
+/// Learns by rule_of(plate).
+template <int M, class LightSampling, class RuleOf>
+method learning_method_of(const view& of, const RuleOf& rule_of, const learning_plan& plan) {
+  return [of, rule_of, plan, all = techniques<M, LightSampling>(of.plates)](const auto& random, int threads,
+                                                                            const auto& after) {
+    auto learnt = render_adaptively(of.points, all, rule_of, plan, random, threads, after);
     rendering result{std::move(learnt.picture), {}};
     for (int k = 0; k < M; ++k) {
       result.fractions.push_back(render::map(learnt.fractions, [k](const auto& alpha) { return alpha[k]; }));
     }
     return result;
   };
+}
+
+/// Learns by copies of a rule.
+template <int M, class LightSampling, class Rule>
+method learning_method(const view& of, const Rule& rule, const learning_plan& plan) {
+  return learning_method_of<M, LightSampling>(
+      of, [rule](int) { return rule; }, plan);
+}
+
+/// What the library recommends, but for the divergence.
+template <int M, class LightSampling, class Divergence>
+method recommended_method(const view& of, std::int64_t samples) {
+  const auto rule_of = [of](int plate) {
+    return recommended_rule<M, Divergence>(of.plates.exponent(plate), of.points.width);
+  };
+  return learning_method_of<M, LightSampling>(of, rule_of, recommended_plan<M>(samples, of.points.width));
 }
 
 template <int M>
@@ -139,9 +160,9 @@ method papers_method(const view& of, const method_name& name, std::int64_t sampl
 template <int M, class LightSampling>
 method make_method(const view& of, const std::string& text, std::int64_t samples) {
   const method_name name = parse_method(text);
-  if (name.family == "default") {
-    return learning_method<M, LightSampling>(of, make_recommended_rule<M>(),
-                                             recommended_plan<M>(samples, of.points.width));
+  if (name.family == "default") return recommended_method<M, LightSampling, phimis::chi_squared>(of, samples);
+  if (name.family == "variance") {
+    return recommended_method<M, LightSampling, phimis::multi_sample_variance>(of, samples);
   }
   if (name.family == "equal") return fixed_method<M, LightSampling>(of, equal_counts<M>(samples));
   if (name.family == "brdf" || name.family == "light") {

@@ -54,7 +54,7 @@ void print_overhead(const view& of, const char* sampler, std::int64_t samples, s
   const auto learning = [&](const auto& rule, const learning_plan& plan) {
     return learning_method<M, LightSampling>(of, rule, plan);
   };
-  const auto recommended = make_recommended_rule<M>();
+  const auto recommended = recommended_rule<M>(1, of.points.width);
   const auto linear = make_linear_rule<M>();
   contender all[] = {
       {"equal counts", "none", 0, 0, fixed_method<M, LightSampling>(of, equal_counts<M>(samples))},

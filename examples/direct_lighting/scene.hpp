@@ -97,6 +97,9 @@ class scene {
 
   static vector eye() { return {0, 6, 18}; }
 
+  /// Of the max-Phong lobe of plate i.
+  float exponent(int i) const { return plates[at(i)].exponent; }
+
   /// The point in the middle of pixel (x, y) of an image; 35° from its lower to its upper edge, square pixels.
   shading_point shade(int x, int y, int width, int height) const {
     const vector forward = -eye().normalized();
