@@ -125,11 +125,13 @@ class simplex_newton {
       if (excess > above) above = excess;
       // Where terms cancel, G_k is known no better than its largest.
       const double scale = now.lambda > sizes_[k] ? now.lambda : sizes_[k];
-      const double violation = scale > 0 ? (theta[k] > 0 ? std::fabs(excess) : excess) / scale : infinity<double>;
+      double violation = scale > 0 ? (theta[k] > 0 ? std::fabs(excess) : excess) / scale : infinity<double>;
+      // Where every score is 0, p is f: but powers, which may underflow, never are.
+      if (scale == 0 && excess == 0 && on_.power() == 0) violation = 0;
       if (violation > worst) worst = violation;
     }
     now.residual = worst;
-    now.gap = now.lambda > 0 ? above / now.lambda : infinity<double>;
+    now.gap = now.lambda > 0 ? above / now.lambda : worst;
   }
 
   PHIMIS_HOST_DEVICE bool newton_step(double* theta, simplex_solution& now) noexcept {
