@@ -12,6 +12,7 @@
 #include <direct_lighting/study.hpp>
 #include <papers/gnuplot.hpp>
 #include <papers/output_folder.hpp>
+#include <papers/report.hpp>
 #include <render/png.hpp>
 #include <render/tone_map.hpp>
 
@@ -99,7 +100,7 @@ int run(const arguments& given) {
     render::write_png(images.path() / "reference.png", render::tone_map(truth));
     const study of{{plates, points}, truth, given.runs, given.seed, given.threads};
     if (table) good = compare_methods(of, given, folder, images);
-    if (given.convergence) draw_convergence(of, papers::output_folder(folder.path() / "figures"));
+    if (given.convergence) papers::write_figures(convergence_figures(of), papers::figures_of(folder));
   }
   if (given.overhead) {
     const int size = given.quick ? 48 : 200;
