@@ -8,10 +8,13 @@
 #include <direct_lighting/image_files.hpp>
 #include <direct_lighting/never_worse.hpp>
 #include <direct_lighting/overhead.hpp>
+#include <direct_lighting/printed.hpp>
 #include <direct_lighting/reference.hpp>
+#include <direct_lighting/section.hpp>
 #include <direct_lighting/study.hpp>
 #include <papers/gnuplot.hpp>
 #include <papers/output_folder.hpp>
+#include <papers/report.hpp>
 #include <render/png.hpp>
 #include <render/tone_map.hpp>
 
@@ -53,9 +56,10 @@ std::vector<configuration> table_of(const arguments& given, const std::string& s
   return wanted;
 }
 
-/// direct_lighting.csv, and images of each of its rows. Whether those whose check is sound have no bias.
+/// direct_lighting.csv and images of each of its rows, which are added to `rows`. Whether those whose check is sound have
+/// no bias.
 bool compare_methods(const study& plates, const arguments& given, const papers::output_folder& folder,
-                     const papers::output_folder& images) {
+                     const papers::output_folder& images, std::vector<measured_method>& rows) {
   bool good = true;
   std::string csv = csv_header;
   const std::vector<std::string> both{"area", "cone"};
@@ -69,16 +73,31 @@ bool compare_methods(const study& plates, const arguments& given, const papers::
         std::find_if(measured.begin(), measured.end(), [&](const measured_method& m) { return is_baseline(m.of); });
     const measured_method baseline = *at;
     if (extra) measured.pop_back();
-    for (const measured_method& m : measured) {
+    for (measured_method& m : measured) {
       csv += csv_row(m, baseline);
       write_images(images, m, plates.of.points);
       // One technique alone may miss a light in every pixel: its error is too skewed for a z.
       if (m.of.method == "equal" || m.of.method == "default") good = unbiased(m, plates.reference) && good;
+      m.forget_images();
     }
     print_table(measured, baseline);
+    rows.insert(rows.end(), measured.begin(), measured.end());
   }
   folder.write("direct_lighting.csv", csv);
   return good;
+}
+
+/// The section of the report. Whether all rows agree as they should.
+bool report(const std::vector<measured_method>& rows, const std::vector<measured_method>& linear,
+            const std::vector<papers::captioned_figure>& figures, const arguments& given,
+            const papers::output_folder& folder) {
+  const papers::comparisons of_tsallis = table_1(rows), of_linear = linear_statements(linear);
+  papers::comparisons both("direct_lighting");
+  both.append(of_tsallis);
+  both.append(of_linear);
+  papers::write_report(folder, both, section(of_tsallis, of_linear, rows, linear, figures, given));
+  std::printf("\n%s: reproduction.md, tables.csv, images/\n", folder.path().c_str());
+  return papers::conclude("direct_lighting", both) == 0;
 }
 
 int run(const arguments& given) {
@@ -98,8 +117,17 @@ int run(const arguments& given) {
         reference(references.path(), given.scene, plates, points, given.reference_samples, given.threads);
     render::write_png(images.path() / "reference.png", render::tone_map(truth));
     const study of{{plates, points}, truth, given.runs, given.seed, given.threads};
-    if (table) good = compare_methods(of, given, folder, images);
-    if (given.convergence) draw_convergence(of, papers::output_folder(folder.path() / "figures"));
+    std::vector<measured_method> rows;
+    if (table) good = compare_methods(of, given, folder, images, rows);
+    std::vector<papers::captioned_figure> figures;
+    if (given.convergence) {
+      figures = convergence_figures(of);
+      papers::write_figures(figures, papers::figures_of(folder));
+    }
+    if (given.as_printed()) {
+      const papers::output_folder of_heuristic(images.path() / "linear_heuristic");
+      good = report(rows, measure_linear(given, references.path(), of_heuristic), figures, given, folder) && good;
+    }
   }
   if (given.overhead) {
     const int size = given.quick ? 48 : 200;

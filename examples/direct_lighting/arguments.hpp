@@ -36,6 +36,9 @@ struct arguments {
 
   /// Whether a study is asked for in place of the methods of one sampler and one number of techniques.
   bool studies() const { return table1 || never_worse || convergence || overhead; }
+
+  /// Whether what is rendered is what the papers print numbers of, often enough to tell its noise.
+  bool as_printed() const { return table1 && scene == scene_options{} && samples == 50 && runs > 1; }
 };
 
 /// Adds the options to a program. After parsing, settle() is called.
@@ -76,7 +79,8 @@ inline void add_options(CLI::App& app, arguments& to) {
   app.add_option("--reference-samples", to.reference_samples, "samples per pixel of the reference, which is kept")
       ->capture_default_str()
       ->check(CLI::Range(std::int64_t{5}, std::int64_t{100000000}));
-  app.add_flag("--table1", to.table1, "T's Table 1, and more: both samplers, both numbers of techniques");
+  app.add_flag("--table1", to.table1,
+               "the report on T's Table 1 and L's Sec. 6.2; both samplers, both numbers of techniques");
   app.add_flag("--never-worse", to.never_worse,
                "the default against equal counts over many scenes and sample counts");
   app.add_flag("--convergence", to.convergence, "figures of errors against samples and seconds");
@@ -94,7 +98,7 @@ inline void settle(const CLI::App& app, arguments& to) {
   if (to.quick) {
     unless_given("--width", to.width, 48);
     unless_given("--height", to.height, 48);
-    unless_given("--runs", to.runs, 2);
+    unless_given("--runs", to.runs, 10);
     unless_given("--reference-samples", to.reference_samples, 2000);
   }
   if (to.full) {

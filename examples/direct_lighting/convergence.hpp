@@ -4,7 +4,7 @@
 
 #include <direct_lighting/study.hpp>
 #include <papers/gnuplot.hpp>
-#include <papers/output_folder.hpp>
+#include <papers/report.hpp>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-// Errors against samples and seconds, both axes logarithmic: SVG and CSV.
+// Errors against samples and seconds, both axes logarithmic.
 
 namespace direct_lighting {
 
@@ -35,22 +35,25 @@ struct convergence_curve {
 };
 
 /// One figure: `y` against `x`, a line of slope −1/2 beside it.
-inline void plot_convergence(const papers::output_folder& folder, const std::string& name, const std::string& title,
-                             const std::vector<convergence_curve>& curves, const char* x_title,
-                             double convergence_point::*x, const char* y_title, double convergence_point::*y) {
+inline papers::captioned_figure convergence_figure(const std::string& name, const std::string& title,
+                                                   const std::string& caption,
+                                                   const std::vector<convergence_curve>& curves, const char* x_title,
+                                                   double convergence_point::*x, const char* y_title,
+                                                   double convergence_point::*y) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   papers::figure figure{.title = title,
                         .x_title = x_title,
                         .y_title = y_title,
-                        .x = {infinity, -infinity},
-                        .y = {infinity, -infinity},
+                        .x = {infinity, 0},
+                        .y = {infinity, 0},
+                        .x_scale = papers::axis_scale::logarithmic,
                         .y_scale = papers::axis_scale::logarithmic};
   std::string csv = "techniques,method,x,error\n";
   for (const convergence_curve& c : curves) {
     papers::plot_series series{c.title, "linespoints linewidth 2 pointtype 7 pointsize 0.6", c.colour, {}};
     for (const convergence_point& p : c.points) {
-      series.points.emplace_back(std::log10(p.*x), p.*y);
-      figure.x = {std::min(figure.x.lower, std::log10(p.*x)), std::max(figure.x.upper, std::log10(p.*x))};
+      series.points.emplace_back(p.*x, p.*y);
+      figure.x = {std::min(figure.x.lower, p.*x), std::max(figure.x.upper, p.*x)};
       figure.y = {std::min(figure.y.lower, p.*y), std::max(figure.y.upper, p.*y)};
       char line[200];
       std::snprintf(line, sizeof line, "%d,%s,%.6g,%.6g\n", c.techniques, c.method, p.*x, p.*y);
@@ -58,18 +61,19 @@ inline void plot_convergence(const papers::output_folder& folder, const std::str
     }
     figure.series.push_back(std::move(series));
   }
-  const double top = figure.y.upper, left = figure.x.lower, right = figure.x.upper;
+  const double left = figure.x.lower, right = figure.x.upper, top = 1.1 * figure.y.upper;
   figure.series.push_back({"slope −1/2",
                            "lines linewidth 1.5 dashtype (10,6)",
                            papers::colour::grey,
-                           {{left, top}, {right, top * std::pow(10, (left - right) / 2)}}});
-  figure.y = {std::pow(10, std::floor(std::log10(figure.y.lower))), std::pow(10, std::ceil(std::log10(top)))};
-  papers::plot(figure, folder, name);
-  folder.write(name + ".csv", csv);
+                           {{left, top}, {right, top * std::sqrt(left / right)}}});
+  figure.x = {left / 1.1, right * 1.1};
+  figure.y = {figure.y.lower / 1.1, 1.1 * top};
+  return {name, caption, figure, csv};
 }
 
 /// Four figures for each sampler. Runs are for 50 samples; with others, as many as take the same time, at least two.
-inline void draw_convergence(const study& plates, const papers::output_folder& folder) {
+inline std::vector<papers::captioned_figure> convergence_figures(const study& plates) {
+  std::vector<papers::captioned_figure> figures;
   for (const std::string sampler : {"area", "cone"}) {
     std::vector<convergence_curve> curves{{"equal counts, 2 techniques", papers::colour::black, 2, "equal"},
                                           {"Tsallis γ = 0.1, 2 techniques", papers::colour::orange, 2, "tsallis:0.1"},
@@ -90,16 +94,19 @@ inline void draw_convergence(const study& plates, const papers::output_folder& f
     }
     const std::string title =
         "Direct lighting, " + sampler + " sampling: errors fall alike, five techniques start lower";
-    const auto draw = [&](const char* error, const char* y_title, double convergence_point::*y) {
-      const std::string name = "direct_lighting_" + sampler + '_' + error;
-      plot_convergence(folder, name + "_samples", title, curves, "samples per pixel  (log_{10})",
-                       &convergence_point::samples, y_title, y);
-      plot_convergence(folder, name + "_seconds", title, curves, "time of an image  (log_{10} s)",
-                       &convergence_point::seconds, y_title, y);
+    const auto draw = [&](const std::string& error, const char* file, const char* y_title,
+                          double convergence_point::*y) {
+      const std::string name = "direct_lighting_" + sampler + '_' + file;
+      const std::string caption = error + " with " + sampler + " sampling, against ";
+      figures.push_back(convergence_figure(name + "_samples", title, caption + "samples per pixel", curves,
+                                           "samples per pixel", &convergence_point::samples, y_title, y));
+      figures.push_back(convergence_figure(name + "_seconds", title, caption + "the time of an image", curves,
+                                           "time of an image  (s)", &convergence_point::seconds, y_title, y));
     };
-    draw("rmse", "RMSE  (radiance, √ of the sum over pixels)", &convergence_point::rmse);
-    draw("relmse", "√ relMSE  (no unit)", &convergence_point::root_relmse);
+    draw("RMSE", "rmse", "RMSE  (radiance, √ of the sum over pixels)", &convergence_point::rmse);
+    draw("√ relMSE", "relmse", "√ relMSE  (no unit)", &convergence_point::root_relmse);
   }
+  return figures;
 }
 
 }  // namespace direct_lighting

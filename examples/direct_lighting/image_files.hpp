@@ -26,12 +26,18 @@ inline render::image<float> fraction_of_lights(const rendering& of, const render
   return alpha;
 }
 
+/// The names of a method's files, without their endings.
+inline std::string image_name(const configuration& of) {
+  std::string name = of.sampler + '_' + std::to_string(of.techniques) + '_' + of.method;
+  std::replace(name.begin(), name.end(), ':', '_');
+  return name;
+}
+
 /// The picture, its errors, and where fractions are learnt a map of them in the papers' colours; the EXR file has all of
 /// them as channels.
 inline void write_images(const papers::output_folder& folder, const measured_method& m,
                          const render::image<shading_point>& points) {
-  std::string name = m.of.sampler + '_' + std::to_string(m.of.techniques) + '_' + m.of.method;
-  std::replace(name.begin(), name.end(), ':', '_');
+  const std::string name = image_name(m.of);
   const auto file = [&](const char* ending) { return folder.path() / (name + ending); };
   std::map<std::string, render::image<float>> channels{{"relative_error", m.error_map}};
   const auto& fractions = m.first_run.fractions;

@@ -20,6 +20,9 @@ struct configuration {
   std::int64_t samples_per_pixel;
 };
 
+/// Whether fractions are learnt.
+inline bool learns(const std::string& method) { return method != "brdf" && method != "light" && method != "equal"; }
+
 /// "tsallis:0.5" is of the family tsallis, with γ = 0.5.
 struct method_name {
   std::string family;
@@ -55,10 +58,11 @@ inline void check(const configuration& what) {
   }
 }
 
-/// What is compared where nothing else is said. γ = 2 is the papers' "variance minimisation".
+/// What is compared where nothing else is said: T's Table 1, and more. γ = 2 is the papers' "variance minimisation".
 inline std::vector<std::string> methods_of(int techniques) {
   if (techniques == 5) return {"equal", "default"};
-  return {"brdf", "light", "equal", "tsallis:0.1", "tsallis:0.5", "tsallis:1", "tsallis:2", "linear", "default"};
+  return {"brdf",      "light",       "equal",     "tsallis:0.01", "tsallis:0.1", "tsallis:0.5",
+          "tsallis:1", "tsallis:1.5", "tsallis:2", "tsallis:2.5",  "linear",      "default"};
 }
 
 }  // namespace direct_lighting

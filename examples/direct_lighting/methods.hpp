@@ -143,9 +143,10 @@ template <class LightSampling>
 method papers_method(const view& of, const method_name& name, std::int64_t samples) {
   if (name.family == "newton") {
     using rule = phimis::newton_raphson<phimis::tsallis, float>;
+    const std::int64_t iterations = std::max<std::int64_t>(1, samples / 10);  // T: 5 of 10 samples, L: 10 of 10
     return learning_method<2, LightSampling>(
         of, rule(phimis::tsallis{name.gamma}, phimis::newton_form::paper, options_of<2>(0.01f, 0)),
-        papers_plan(samples, 2, 5));
+        papers_plan(samples, 2, iterations));
   }
   if (name.family == "linear") {
     return learning_method<2, LightSampling>(of, make_linear_rule<2>(), papers_plan(samples, 2, 10));

@@ -24,6 +24,8 @@ struct scene_options {
   std::array<float, 4> exponents{50, 100, 500, 1000};
   int plates = 4;
   float radius_scale = 1;  ///< of all lights; their power stays
+
+  friend bool operator==(const scene_options&, const scene_options&) = default;
 };
 
 /// A rectangle, half_width in x and 1 across, that reflects on its upper side.

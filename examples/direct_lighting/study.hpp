@@ -25,6 +25,9 @@ struct measured_method {
   rendering first_run{};
   render::image<float> error_map{};  ///< (I−R)²/(R² + 0.01), mean over the runs
 
+  /// Once they are written: those of all methods would take much memory.
+  void forget_images() { first_run = {}, error_map = {}; }
+
   render::image_error error() const {
     render::image_error sum;
     for (const render::image_error& e : errors) sum += e;

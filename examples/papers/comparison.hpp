@@ -59,7 +59,7 @@ struct comparison {
   bool as_expected() const { return (found != agreement::none) == (expected == expectation::agrees); }
 };
 
-/// The table of one paper.
+/// The table of one paper, or of one part of the report with rows of several.
 class comparisons {
  public:
   explicit comparisons(std::string paper) : paper_(std::move(paper)) {}
@@ -77,6 +77,9 @@ class comparisons {
                  expectation expected = expectation::agrees, const std::string& note = "") {
     rows_.push_back({paper_, item, printed, computed, holds ? agreement::rounded : agreement::none, expected, note});
   }
+
+  /// Adds the rows of another paper.
+  void append(const comparisons& other) { rows_.insert(rows_.end(), other.rows_.begin(), other.rows_.end()); }
 
   const std::string& paper() const noexcept { return paper_; }
   const std::vector<comparison>& rows() const noexcept { return rows_; }

@@ -4,6 +4,7 @@
 
 #include <papers/output_folder.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -37,6 +38,7 @@ struct figure {
   std::string y_title;
   plot_range x{};
   plot_range y{};
+  axis_scale x_scale = axis_scale::linear;
   axis_scale y_scale = axis_scale::linear;
   std::vector<plot_series> series{};
 };
@@ -69,6 +71,27 @@ inline std::string quoted(const std::string& text) {
     if (c == '\'') result += c;
   }
   return result + "'";
+}
+
+/// A logarithmic axis, with tics at 1, 2, 5, 10, … where it spans few decades, and else at powers of ten.
+inline std::string logarithmic(char axis, const plot_range& of) {
+  std::ostringstream out;
+  out << "set logscale " << axis << "\nunset m" << axis << "tics\n";
+  const double first = std::floor(std::log10(of.lower)), last = std::ceil(std::log10(of.upper));
+  if (last - first > 4) {
+    out << "set format " << axis << " '10^{%T}'\n";
+    return out.str();
+  }
+  out << "set format " << axis << " '%g'\nset " << axis << "tics";
+  const char* separator = " (";
+  for (double decade = first; decade <= last; ++decade) {
+    for (const double step : {1, 2, 5}) {
+      out << separator << step * std::pow(10, decade);
+      separator = ", ";
+    }
+  }
+  out << ")\n";
+  return out.str();
 }
 
 /// The dots above the range, moved to its upper edge as triangles.
@@ -106,7 +129,8 @@ inline std::string script(const figure& of, const std::filesystem::path& output)
          "set key bmargin center Left reverse maxcols 2 maxrows "
       << legend_lines << " width -4 spacing 1.25 samplen 3 font ',16'\n"
       << "set bmargin " << 4 + 1.5 * static_cast<double>(legend_lines) << "\n";
-  if (of.y_scale == axis_scale::logarithmic) out << "set logscale y\nset format y '10^{%T}'\nunset mytics\n";
+  if (of.x_scale == axis_scale::logarithmic) out << logarithmic('x', of.x);
+  if (of.y_scale == axis_scale::logarithmic) out << logarithmic('y', of.y);
   for (std::size_t i = 0; i < all.size(); ++i) {
     out << "$data" << i << " << EOD\n";
     for (const auto& [x, y] : all[i].points) out << x << ' ' << y << '\n';

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-// One report of all papers, to which the program of each paper adds its part.
+// One report of all papers, to which each program adds its part.
 
 namespace papers {
 
@@ -52,8 +52,8 @@ inline std::string markdown(const std::vector<captioned_figure>& figures) {
   return text;
 }
 
-/// The papers by their keys, in the order of the report.
-inline constexpr const char* paper_keys[] = {"T", "L", "V"};
+/// The parts of the report by their keys, in its order: a paper each, and what both T and L render.
+inline constexpr const char* part_keys[] = {"T", "L", "V", "direct_lighting"};
 
 namespace detail {
 
@@ -65,12 +65,12 @@ inline std::string contents(const std::filesystem::path& file) {
 
 }  // namespace detail
 
-/// Puts one paper's rows and section into the report of a folder, and leaves those of the other papers.
+/// Puts one part's rows and section into the report of a folder, and leaves the other parts.
 ///
-///     tables/KEY.csv, sections/KEY.md     each paper's own
-///     tables.csv, reproduction.md         all papers that are there, in the order T, L, V
+///     tables/KEY.csv, sections/KEY.md     each part's own
+///     tables.csv, reproduction.md         all parts that are there, in the order of part_keys
 ///
-/// Requires a section that starts with its "## " heading; the table's key is one of paper_keys.
+/// Requires a section that starts with its "## " heading; the table's key is one of part_keys.
 inline void write_report(const output_folder& folder, const comparisons& table, const std::string& section) {
   const output_folder tables(folder.path() / "tables");
   const output_folder sections(folder.path() / "sections");
@@ -80,11 +80,11 @@ inline void write_report(const output_folder& folder, const comparisons& table, 
   std::string rows;
   std::string page =
       "# Reproduction\n\n"
-      "Made by `sh examples/reproduce.sh`, which writes this page, `tables.csv` and `figures/`, with the data behind "
-      "each figure as CSV. Do not edit it: run the command again.\n";
-  for (const std::string key : paper_keys) {
-    const std::string of_paper = detail::contents(tables.path() / (key + ".csv"));
-    rows += rows.empty() ? of_paper : of_paper.substr(of_paper.find('\n') + 1);  // the header once
+      "Made by `sh examples/reproduce.sh`, which writes this page, `tables.csv`, `images/` and `figures/`, with the "
+      "data behind each figure as CSV. Do not edit it: run the command again.\n";
+  for (const std::string key : part_keys) {
+    const std::string of_part = detail::contents(tables.path() / (key + ".csv"));
+    rows += rows.empty() ? of_part : of_part.substr(of_part.find('\n') + 1);  // the header once
     const std::string about = detail::contents(sections.path() / (key + ".md"));
     if (!about.empty()) page += '\n' + about.substr(0, about.find_last_not_of('\n') + 1) + '\n';
   }
@@ -104,7 +104,7 @@ inline int conclude(const char* program, const comparisons& table) {
                  row.printed.c_str(), row.computed.c_str(), row.agrees().c_str());
   }
   std::printf("%d of %zu printed numbers and statements agree, the others are %s\n", agree, table.rows().size(),
-              surprises == 0 ? "known to be wrong" : "known to be wrong or listed above");
+              surprises == 0 ? "explained in their notes" : "explained in their notes or listed above");
   return surprises == 0 ? 0 : 1;
 }
 

@@ -20,7 +20,7 @@ comparisons table_of(const std::string& paper, const std::string& item) {
 
 }  // namespace
 
-TEST_CASE("Papers keep their parts of a report, in the order T, L, V, whichever program runs when") {
+TEST_CASE("Programs keep their parts of a report, in the same order, whichever program runs when") {
   const papers::output_folder folder(std::filesystem::temp_directory_path() / "phimis_report_test");
   std::filesystem::remove_all(folder.path());
   const papers::output_folder fresh(folder.path());
@@ -37,7 +37,16 @@ TEST_CASE("Papers keep their parts of a report, in the order T, L, V, whichever 
   write_report(fresh, table_of("V", "second"), "## Variance\n\nw\n");
   CHECK(tables() == header + rest + "V,second,0.5,0.5,yes,\n");
 
-  const std::string sections = "\n## Tsallis\n\nt\n\n## Linear\n\nl\n\n## Variance\n\nw\n";
+  comparisons rendered("direct_lighting");
+  rendered.append(table_of("T", "image"));
+  rendered.append(table_of("L", "image"));
+  write_report(fresh, rendered, "## Direct lighting\n\nd");
+  write_report(fresh, table_of("V", "third"), "## Variance\n\nx\n");
+  write_report(fresh, rendered, "## Direct lighting\n\ne");
+  CHECK(tables() == header + rest + "V,third,0.5,0.5,yes,\nT,image,0.5,0.5,yes,\nL,image,0.5,0.5,yes,\n");
+
+  const std::string sections =
+      "\n## Tsallis\n\nt\n\n## Linear\n\nl\n\n## Variance\n\nx\n\n## Direct lighting\n\ne\n";
   CHECK(page().find("# Reproduction\n\nMade by `sh examples/reproduce.sh`") == 0);
   CHECK(page().size() > sections.size());
   CHECK(page().substr(page().size() - sections.size()) == sections);
