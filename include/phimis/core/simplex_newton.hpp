@@ -224,7 +224,8 @@ class simplex_newton {
       }
       // The secant of the slopes; where the objective soars towards the end of the step, that says too little.
       const double secant = finite && slope < 0 ? length * start / (start - slope) : 0;
-      const double least = (attempt < 2 ? 0.6 : 0.1) * length;
+      // A power below 1 of a coordinate that was 0 turns the slope after 1e-26 of the way.
+      const double least = (attempt < 2 ? 0.6 : attempt < 8 ? 0.1 : 1e-3) * length;
       const double largest = (attempt < 4 ? 0.9 : 0.4) * length;
       length = secant < least ? least : secant > largest ? largest : secant;
     }
