@@ -66,11 +66,12 @@ inline std::string section(const papers::comparisons& of_tsallis, const papers::
                            const std::vector<measured_method>& measured, const std::vector<measured_method>& linear,
                            const std::vector<papers::captioned_figure>& figures, const arguments& given) {
   std::ostringstream text;
-  text << "## Direct lighting\n\n"
-          "Sec. 8 of the Tsallis paper (T) and Sec. 6.2 of the linear heuristic's (L): four plates below four lights. "
-          "The papers print no geometry and no unit of radiance, and their RMSE grows with the image; ratios to equal "
-          "counts are compared. They agree within 5 %; ± is one standard error of ours. Here "
-       << given.width << " × " << given.height << " pixels and " << given.runs << " runs";
+  text
+      << "## Direct lighting\n\n"
+         "Sec. 8 of the Tsallis paper (T) and Sec. 6.2 of the linear heuristic's (L): four plates below four lights. "
+         "The papers print no geometry and no unit of radiance, and their RMSE grows with the image; ratios to equal "
+         "counts are compared. They agree within 5 %; ± is one standard error of ours. Here "
+      << given.width << " × " << given.height << " pixels and " << given.runs << " runs";
   if (given.width < 600 || given.height < 600 || given.runs < 30) {
     text << ", which is less than T's 600 × 600 and 30 (`--full`)";
   }
@@ -78,13 +79,16 @@ inline std::string section(const papers::comparisons& of_tsallis, const papers::
        << " samples per pixel. Every method, also with cone sampling and five techniques: "
           "`direct_lighting.csv`. Made by `direct_lighting --table1"
        << (given.convergence ? " --convergence" : "")
-       << (given.full ? " --full" : given.quick ? " --quick" : "")
+       << (given.full    ? " --full"
+           : given.quick ? " --quick"
+                         : "")
        << "`.\n\n### Printed numbers and statements on direct lighting\n\nT:\n\n"
        << of_tsallis.markdown() << "\nL, with its exponents and 100 samples per pixel:\n\n"
        << of_linear.markdown()
        << "\n### Images of direct lighting\n\n"
           "α is that of a pixel's last batch, 0 blue and 1 red; the relative error, √ of the mean of "
-          "(I − R)²/(R² + 0.01) over channels and runs, is red from 100 % on. Beside each picture is an EXR file "
+          "(I − R)²/(R² + 0.01) over channels and runs, is red from 100 % on. The program writes an EXR file beside "
+          "each picture, "
           "with all of them.\n\n"
           "![reference](images/reference.png)\n\nThe reference (T Fig. 11).\n\nT Fig. 10, with "
        << given.samples << " samples per pixel; what is only linked is not in the paper.\n\n"

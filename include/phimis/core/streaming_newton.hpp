@@ -93,7 +93,7 @@ struct streaming_sums : streaming_means<Real, M, Means> {
 /// Errors   no_information, and fractions as before, where every f is 0; not_converged, and all sums forgotten, where
 ///          p/q was so large that one is not finite. An observation whose |f|/p is not finite is
 ///          counted as such; of one with f = 0 the pdfs are not looked at.
-/// Cost     an observation with f ≠ 0: M (M + 5)/2 multiplications (V[F]: M more of M + 1), three divisions and a power; with
+/// Cost     an observation with f ≠ 0: M (M + 5)/2 multiplications (V[F]: M (M + 1) more), three divisions and a power; with
 ///          f = 0 nothing. An update: M³ for each change of the set of techniques at their floors.
 /// - There is no control variate: pdfs may be defective. Costs are not known to this rule.
 /// - The prior enters as the second order of prior · D(π, α) at π, at each update.
