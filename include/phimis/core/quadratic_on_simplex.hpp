@@ -41,7 +41,7 @@ class quadratic_problem {
   }
 
   PHIMIS_HOST_DEVICE void hessian(const int* support, int size, double* hessian) noexcept {
-    double raw[(M + 1) * (M + 1)];
+    double raw[(M + 1) * (M + 1)] = {};
     const double* const fixed = on_.fixed();  // the last column
     const int order = size + (fixed != nullptr ? 1 : 0);
     double of_fixed = 0;
