@@ -19,6 +19,7 @@ template <int M>
 class quadratic_problem {
  public:
   static constexpr bool convex = true;
+  static constexpr bool may_vanish = false;
 
   PHIMIS_HOST_DEVICE quadratic_problem(const double (&a)[M][M], const double (&b)[M], double factor,
                                        floored_simplex& on) noexcept
@@ -33,7 +34,7 @@ class quadratic_problem {
     for (int k = 0; k < M; ++k) {
       raw[k] = factor_ * b_[k];
       for (int l = 0; l < M; ++l) raw[k] -= a_[k][l] * on_.beta()[l];
-      lambda += on_.beta()[k] * b_[k];
+      lambda += on_.beta()[k] * std::fabs(b_[k]);
     }
     on_.pull_back(raw, gradient);
     for (int i = 0; i < on_.size(); ++i) sizes[i] = std::fabs(gradient[i]);
@@ -74,7 +75,7 @@ class quadratic_problem {
 ///
 ///     min_β −factor b·β + ½ βᵀA β
 ///
-/// Requires A symmetric and positive semi-definite, b > 0 of the size of Aβ.
+/// Requires A symmetric and positive semi-definite, b of the size of Aβ.
 template <class Real, int M>
 PHIMIS_HOST_DEVICE rule_status minimise_quadratic(const double (&a)[M][M], const double (&b)[M], double factor,
                                                   floored_simplex& on, fractions<Real, M>& alpha) noexcept {

@@ -38,7 +38,8 @@ PHIMIS_HOST_DEVICE constexpr int simplex_indices(int m) noexcept { return 3 * m;
 ///           scale λ, and keeps θ;
 ///           void hessian(const int* support, int size, double* H): H[size][size] there, positive semi-definite if convex;
 ///           double power(): β, or 0 where the multiplicative step is not known to descend;
-///           convex: a constant; if false, double value() there.
+///           convex: a constant; if false, double value() there;
+///           may_vanish: a constant, that all terms are 0 at an optimum and nowhere else. Powers underflow.
 /// Source    the outer method is that of Kim, Carbonetto, Stephens & Anitescu 2020 for γ = 1; here for every score, and
 ///           without evaluating the objective.
 /// Errors    none; the residual tells.
@@ -126,8 +127,7 @@ class simplex_newton {
       // Where terms cancel, G_k is known no better than its largest.
       const double scale = now.lambda > sizes_[k] ? now.lambda : sizes_[k];
       double violation = scale > 0 ? (theta[k] > 0 ? std::fabs(excess) : excess) / scale : infinity<double>;
-      // Where every score is 0, p is f: but powers, which may underflow, never are.
-      if (scale == 0 && excess == 0 && on_.power() == 0) violation = 0;
+      if (Problem::may_vanish && scale == 0 && excess == 0) violation = 0;
       if (violation > worst) worst = violation;
     }
     now.residual = worst;
@@ -155,7 +155,10 @@ class simplex_newton {
     }
     size_ = size;
     model_.keep(hessian_, size);
-    if (again && step_of_model(theta, now, 0)) return true;
+    if (again) {
+      if (step_of_model(theta, now, 0)) return true;
+      if (!evaluate(theta, gradient_, now)) return false;  // what failed left its point behind
+    }
     on_.hessian(support_, size, hessian_);
     // No coordinate alone is to go a thousand times as far as the simplex is long: a nearly flat one would drown the others. Where it is
     // not convex, the diagonal may be negative while every edge of the simplex is curved.

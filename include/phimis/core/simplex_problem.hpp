@@ -5,6 +5,7 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/divergence_at.hpp>
+#include <phimis/core/finite.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/mixture_sums.hpp>
 
@@ -129,6 +130,7 @@ template <class Divergence, class Real>
 class divergence_on_simplex {
  public:
   static constexpr bool convex = true;
+  static constexpr bool may_vanish = !has_exponent<Divergence>::value;
   PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 2 * m + (m + 1) * (m + 1); }
 
   PHIMIS_HOST_DEVICE divergence_on_simplex(const Divergence& divergence, const column_pointers<Real>& rows,

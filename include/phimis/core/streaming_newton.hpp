@@ -27,7 +27,7 @@ PHIMIS_HOST_DEVICE constexpr double streaming_exponent(const Divergence& diverge
   }
 }
 
-/// Σ t p_k p_l/(p q), k >= l, t with the sign of f: the slopes of the techniques' means μ'_k.
+/// Σ t p_k p_l/(p q), k >= l, t with the sign of f: minus the slopes of the techniques' means μ'_k.
 template <class Real, int M, bool Wanted>
 struct streaming_means {
   Real m[M * (M + 1) / 2] = {};
@@ -85,15 +85,16 @@ struct streaming_sums : streaming_means<Real, M, Means> {
 ///
 ///     ½ (μ'_l² − 2 Σ_k α_k μ'_k M_kl),   M_kl = ∫ f p_k p_l/p² dx,   μ'_k = Σ_l M_kl α_l
 ///
-/// Its curvature is left out, so that steps are short where V[F] is far below V[ℱ], and never wild. Where pixels of a cell
-/// share sums, means of means stand for the means of each: between V[ℱ] and V[F].
+/// Its curvature is left out, so that steps are short where V[F] is far below V[ℱ]; where f has both signs they may be too
+/// long, and fractions swing if retention is near 0. M_kl stays at the fractions of its time. Where pixels of a cell share
+/// sums, means of means stand for the means of each: between V[ℱ] and V[F].
 ///
 /// Source   T Eqs. 30–32, for M techniques; floors as constraints. V[F]: T Eq. 7.
 /// Requires a divergence of the power family, γ > 0, or a variance; 0 <= retention <= 1.
 /// Errors   no_information, and fractions as before, where every f is 0; not_converged, and all sums forgotten, where
 ///          p/q was so large that one is not finite. An observation whose |f|/p is not finite is
 ///          counted as such; of one with f = 0 the pdfs are not looked at.
-/// Cost     an observation with f ≠ 0: M (M + 5)/2 multiplications (V[F]: M (M + 1) more), three divisions and a power; with
+/// Cost     an observation with f ≠ 0: M (M + 7)/2 multiplications (V[F]: M (M + 1) more), three divisions and a power; with
 ///          f = 0 nothing. An update: M³ for each change of the set of techniques at their floors.
 /// - There is no control variate: pdfs may be defective. Costs are not known to this rule.
 /// - The prior enters as the second order of prior · D(π, α) at π, at each update.
@@ -194,8 +195,12 @@ class streaming_newton
     if (on.has_freedom()) {
       status = minimise_quadratic(a, b, 1 + 1 / exponent(), on, this->state_.fractions);
     }
-    of.n *= retention_;
-    of.scale(retention_, retention_);
+    if (retention_ > 0) {
+      of.n *= retention_;
+      of.scale(retention_, retention_);
+    } else {
+      of = sums{};  // the unit too
+    }
     return this->end(status);
   }
 

@@ -50,10 +50,12 @@ class technique_sums {
  private:
   static constexpr Real most = 1 / (4 * smallest_normal<Real>);
 
-  /// 1/x, finite where x is tiny.
-  PHIMIS_HOST_DEVICE static Real inverse(Real x) noexcept { return x * most > 1 ? 1 / x : most; }
+  /// 1/x; of a huge x the smallest number that -ffast-math does not take for 0.
+  PHIMIS_HOST_DEVICE static Real inverse(Real x) noexcept {
+    return x * smallest_normal<Real> < 1 ? 1 / x : smallest_normal<Real>;
+  }
 
-  /// Takes larger units, where these are; sums without any are 0.
+  /// Takes larger units, where these are.
   PHIMIS_HOST_DEVICE void lower(Real per_density, Real per_f) noexcept {
     if (per_density < per_density_) {
       const Real ratio = per_density / per_density_;

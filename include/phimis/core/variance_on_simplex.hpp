@@ -31,6 +31,7 @@ template <class Real>
 class variance_on_simplex {
  public:
   static constexpr bool convex = false;
+  static constexpr bool may_vanish = false;
   PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 3 * m + 2 * (m + 1) * (m + 1); }
 
   /// costs[m] or null where all are equal; mass: what sums are divided by to be means; π[m] in the coordinates a.

@@ -2,6 +2,7 @@
 #ifndef PHIMIS_SOLVER_JOINT_PROBLEM_HPP
 #define PHIMIS_SOLVER_JOINT_PROBLEM_HPP
 
+#include <phimis/core/finite.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/minimise_rows.hpp>
 #include <phimis/core/rule.hpp>
@@ -40,6 +41,7 @@ class joint_problem {
 
  public:
   static constexpr bool convex = true;
+  static constexpr bool may_vanish = false;
 
   joint_problem(const columns<double, M>& rows, double unit, floored_simplex& on, const double* kappa)
       : rows_(rows), unit_(unit), on_(on), kappa_(kappa) {}

@@ -4,6 +4,7 @@
 
 #include <phimis/concepts.hpp>
 #include <phimis/core/exact_minimiser.hpp>
+#include <phimis/core/finite.hpp>
 #include <phimis/core/inverse_variance_fractions.hpp>
 #include <phimis/core/linear_heuristic.hpp>
 #include <phimis/core/newton_raphson.hpp>

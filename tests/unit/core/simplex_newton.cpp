@@ -12,6 +12,7 @@ namespace {
 /// ½ θ'Aθ − b'θ: any minimum can be checked by its conditions, and small ones by looking everywhere.
 struct quadratic {
   static constexpr bool convex = true;
+  static constexpr bool may_vanish = false;
   int m;
   std::vector<double> a;
   std::vector<double> b;
@@ -96,6 +97,7 @@ namespace {
 /// −Σ log θ_k b_k, infinite at every corner.
 struct barrier {
   static constexpr bool convex = true;
+  static constexpr bool may_vanish = false;
   const double* b;
   int m;
   std::vector<double> at{};
@@ -118,6 +120,7 @@ struct barrier {
 /// A double well along the segment between two corners.
 struct double_well {
   static constexpr bool convex = false;
+  static constexpr bool may_vanish = false;
   double x = 0;
 
   double value() const { return (x - 0.2) * (x - 0.2) * (x - 0.8) * (x - 0.8) + 0.001 * x; }

@@ -69,7 +69,8 @@ TEMPLATE_TEST_CASE("For two techniques and one batch it is the step of Newton–
   }
 }
 
-TEMPLATE_TEST_CASE("Updates on the same observations, with no memory, walk to the exact minimum", "", float, double) {
+TEMPLATE_TEST_CASE("Updates on the same observations, with nothing retained, walk to the exact minimum", "", float,
+                   double) {
   using exact = phimis::exact_minimiser<tsallis, phimis::fixed_table<TestType, 3, 96>>;
   for (const double gamma : {0.5, 1.0, 2.0}) {
     for (const auto f : {in_the_span, falling, wave}) {
@@ -104,6 +105,45 @@ TEMPLATE_TEST_CASE("Updates for V[F] walk to the fractions where it is least", "
     apart = std::fmax(apart, distance(one_sample.fractions(), best.fractions()));
   }
   CHECK(apart > 0.003);  // the optimum of V[ℱ] is another
+}
+
+TEMPLATE_TEST_CASE("The rule for V[F] merges, scales and keeps within its options as the others do", "", float,
+                   double) {
+  const auto all = three_powers::observe<TestType>(wave, {{20, 40, 30}}, 5);
+  auto options = phimis::without_floors<TestType, 3>();
+  options.prior = 3;
+  options.floors = {{TestType(0.05), TestType(0.1), 0}};
+  const streaming_variance<TestType> fresh({}, options, TestType(0.5));
+  const auto one = learnt(learnt(fresh, all), all);
+  CHECK(one.fractions()[0] >= TestType(0.05));
+  CHECK(one.fractions()[1] >= TestType(0.1));
+  streaming_variance<TestType> left = fresh, right = fresh;
+  for (std::size_t j = 0; j < all.size(); ++j) (j % 3 == 0 ? left : right).observe(all[j]);
+  left.merge(right);
+  left.update();
+  CHECK(distance(left.fractions(), learnt(fresh, all).fractions()) <= 1000 * rounding<TestType>);
+  CHECK(distance(learnt(left, all).fractions(), one.fractions()) <= 1000 * rounding<TestType>);
+  // Without the means of the other half, this is what would be learnt.
+  auto half = fresh;
+  for (std::size_t j = 0; j < all.size(); j += 3) half.observe(all[j]);
+  half.update();
+  CHECK(distance(half.fractions(), left.fractions()) > 1e-3);
+  auto scaled = all;
+  for (auto& o : scaled) o.f *= -TestType(1e20);
+  CHECK(distance(learnt(learnt(fresh, scaled), scaled).fractions(), one.fractions()) <= 1000 * rounding<TestType>);
+  options.frozen[1] = true;
+  options.start = {{TestType(0.25), TestType(0.25), TestType(0.5)}};
+  const auto held = learnt(streaming_variance<TestType>({}, options), all);
+  CHECK(held.fractions()[1] == TestType(0.25));
+  CHECK(held.fractions()[0] != TestType(0.25));
+}
+
+TEMPLATE_TEST_CASE("Where nothing is retained the unit is forgotten, too", "", float, double) {
+  const auto all = three_powers::observe<TestType>(wave, {{20, 40, 30}}, 5);
+  auto faint = all;
+  for (auto& o : faint) o.f *= TestType(std::is_same_v<TestType, float> ? 1e-25 : 1e-200);
+  const auto once = learnt(streaming<TestType>(tsallis{2}, {}, 0), all);
+  CHECK(distance(learnt(once, faint).fractions(), learnt(once, all).fractions()) <= 1000 * rounding<TestType>);
 }
 
 TEMPLATE_TEST_CASE("Merged in any grouping, states learn the same; pooled with weight 2, as if seen twice", "", float,
