@@ -71,8 +71,8 @@ struct linear_memory<Real, M, negative_fractions::best_face, Table> {
 ///          nothing where pdfs are linearly dependent. Costs are not known to this rule.
 /// Errors   solutions with a negative fraction are counted in `counters().left`. Where a treatment finds no fractions
 ///          (not_converged), and without information, they stay as they were.
-/// Cost     an observation: two divisions, and with `project` M more and what projection_sums costs. An update: M³ operations;
-///          `best_face` reads all samples for each of M faces, or of 2^M where few have a solution. Memory: M² + M
+/// Cost     an observation: two divisions, and with `project` M more and what projection_sums costs. An update: M³
+///          operations; `best_face` reads all samples for each of M faces, or of 2^M where few have a solution. Memory: M² + M
 ///          numbers, with `project` M²(M + 3)/2 more, with `best_face` every sample.
 /// - |f| stands for f.
 /// - The equations depend on the parametrisation of x, as L2 does; the fit of `project` does not.

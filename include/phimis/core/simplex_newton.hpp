@@ -154,8 +154,8 @@ class simplex_newton {
       for (int b = 0; b < size; ++b) hessian_[a * size + b] = hessian_[kept_[a] * size_ + kept_[b]];
     }
     size_ = size;
-    model_.keep(hessian_, size);
     if (again) {
+      model_.keep(hessian_, size);
       if (step_of_model(theta, now, 0)) return true;
       if (!evaluate(theta, gradient_, now)) return false;  // what failed left its point behind
     }
