@@ -8,10 +8,11 @@
 #include <direct_lighting/image_files.hpp>
 #include <direct_lighting/never_worse.hpp>
 #include <direct_lighting/overhead.hpp>
+#include <direct_lighting/methods.hpp>
 #include <direct_lighting/printed.hpp>
 #include <direct_lighting/reference.hpp>
 #include <direct_lighting/section.hpp>
-#include <direct_lighting/study.hpp>
+#include <direct_lighting/table.hpp>
 #include <papers/gnuplot.hpp>
 #include <papers/output_folder.hpp>
 #include <papers/report.hpp>
@@ -37,7 +38,7 @@ bool unbiased(const measured_method& m, const render::image<render::rgb>& refere
   const double z = render::bias_in_standard_errors(m.first_run.picture, reference);
   if (std::fabs(z) < 5) return true;
   std::fprintf(stderr, "direct_lighting: %s with %d techniques, %s sampling is biased, z = %.1f\n",
-               m.of.method.c_str(), m.of.techniques, m.of.sampler.c_str(), z);
+               m.of.method.c_str(), m.of.techniques, m.of.setting.c_str(), z);
   return false;
 }
 
@@ -58,7 +59,7 @@ std::vector<configuration> table_of(const arguments& given, const std::string& s
 
 /// direct_lighting.csv and images of each of its rows, which are added to `rows`. Whether those whose check is sound have
 /// no bias.
-bool compare_methods(const study& plates, const arguments& given, const papers::output_folder& folder,
+bool compare_methods(const study& plates, const view& seen, const arguments& given, const papers::output_folder& folder,
                      const papers::output_folder& images, std::vector<measured_method>& rows) {
   bool good = true;
   std::string csv = csv_header;
@@ -75,7 +76,7 @@ bool compare_methods(const study& plates, const arguments& given, const papers::
     if (extra) measured.pop_back();
     for (measured_method& m : measured) {
       csv += csv_row(m, baseline);
-      write_images(images, m, plates.of.points);
+      write_images(images, m, seen.points);
       // One technique alone may miss a light in every pixel: its error is too skewed for a z.
       if (m.of.method == "equal" || m.of.method == "default") good = unbiased(m, plates.reference) && good;
       m.forget_images();
@@ -116,9 +117,10 @@ int run(const arguments& given) {
     const auto truth =
         reference(references.path(), given.scene, plates, points, given.reference_samples, given.threads);
     render::write_png(images.path() / "reference.png", render::tone_map(truth));
-    const study of{{plates, points}, truth, given.runs, given.seed, given.threads};
+    const view seen{plates, points};
+    const study of{[&](const configuration& one) { return make_method(seen, one); }, truth, given.runs, given.seed, given.threads};
     std::vector<measured_method> rows;
-    if (table) good = compare_methods(of, given, folder, images, rows);
+    if (table) good = compare_methods(of, seen, given, folder, images, rows);
     std::vector<papers::captioned_figure> figures;
     if (given.convergence) {
       figures = convergence_figures(of);

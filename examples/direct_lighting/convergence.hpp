@@ -2,7 +2,7 @@
 #ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_CONVERGENCE_HPP
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_CONVERGENCE_HPP
 
-#include <direct_lighting/study.hpp>
+#include <direct_lighting/table.hpp>
 #include <papers/gnuplot.hpp>
 #include <papers/report.hpp>
 

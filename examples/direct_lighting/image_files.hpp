@@ -2,7 +2,7 @@
 #ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_IMAGE_FILES_HPP
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_IMAGE_FILES_HPP
 
-#include <direct_lighting/study.hpp>
+#include <direct_lighting/table.hpp>
 #include <papers/output_folder.hpp>
 #include <render/colour_map.hpp>
 #include <render/exr.hpp>
@@ -21,14 +21,14 @@ namespace direct_lighting {
 inline render::image<float> fraction_of_lights(const rendering& of, const render::image<shading_point>& points) {
   render::image<float> alpha(points.width, points.height, std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < alpha.pixels.size(); ++i) {
-    if (points.pixels[i].plate != shading_point::no_plate) alpha.pixels[i] = 1 - of.fractions.back().pixels[i];
+    if (points.pixels[i].part != shading_point::no_part) alpha.pixels[i] = 1 - of.fractions.back().pixels[i];
   }
   return alpha;
 }
 
 /// The names of a method's files, without their endings.
 inline std::string image_name(const configuration& of) {
-  std::string name = of.sampler + '_' + std::to_string(of.techniques) + '_' + of.method;
+  std::string name = of.setting + '_' + std::to_string(of.techniques) + '_' + of.method;
   std::replace(name.begin(), name.end(), ':', '_');
   return name;
 }

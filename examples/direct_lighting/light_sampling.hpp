@@ -2,13 +2,15 @@
 #ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_LIGHT_SAMPLING_HPP
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_LIGHT_SAMPLING_HPP
 
-#include <direct_lighting/direction.hpp>
+#include <render/direction.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace direct_lighting {
+
+using render::around, render::pi, render::turn, render::vector;
 
 /// A light sphere as it is seen from a point outside.
 ///

@@ -2,6 +2,8 @@
 #ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_METHOD_NAME_HPP
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_METHOD_NAME_HPP
 
+#include <render/method.hpp>
+
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -12,13 +14,8 @@
 
 namespace direct_lighting {
 
-/// What is rendered, and how.
-struct configuration {
-  std::string sampler;  ///< of points of a light: area or cone
-  int techniques;       ///< 2 or 5
-  std::string method;
-  std::int64_t samples_per_pixel;
-};
+/// Its setting is how points of a light are drawn, area or cone; techniques are 2 or 5.
+using render::configuration;
 
 /// Whether fractions are learnt.
 inline bool learns(const std::string& method) { return method != "brdf" && method != "light" && method != "equal"; }
@@ -53,8 +50,9 @@ inline void check(const configuration& what) {
   if (of_two && what.techniques != 2)
     throw std::invalid_argument("--method " + what.method + " is for two techniques");
   if (what.samples_per_pixel < what.techniques) throw std::invalid_argument("--samples: fewer than --techniques");
-  if (family == "tsallis" && what.samples_per_pixel > 1024) {
-    throw std::invalid_argument("--method tsallis keeps every sample of a pixel: at most 1024 --samples");
+  if (family == "tsallis" && what.samples_per_pixel > render::most_samples_of_tsallis) {
+    throw std::invalid_argument("--method tsallis keeps every sample of a pixel: at most " +
+                                std::to_string(render::most_samples_of_tsallis) + " --samples");
   }
 }
 

@@ -3,8 +3,9 @@
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_NEVER_WORSE_HPP
 
 #include <direct_lighting/arguments.hpp>
+#include <direct_lighting/methods.hpp>
 #include <direct_lighting/reference.hpp>
-#include <direct_lighting/study.hpp>
+#include <direct_lighting/table.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -102,7 +103,7 @@ inline bool never_worse(const papers::output_folder& folder, const std::filesyst
       csv += csv_row(pair[1], pair[0]);
       ++rows;
       std::printf("| %g | %d | %g | %s | %d | %lld | %zu | %.4f | %.4f | %.4f | %.4f |\n", double{n}, options.plates,
-                  double{options.radius_scale}, base.sampler.c_str(), base.techniques,
+                  double{options.radius_scale}, base.setting.c_str(), base.techniques,
                   static_cast<long long>(base.samples_per_pixel), pair[1].errors.size(), ratios[0].ratio,
                   ratios[0].standard_error, ratios[1].ratio, ratios[1].standard_error);
       for (int w = 0; w < 2; ++w) {
@@ -110,7 +111,7 @@ inline bool never_worse(const papers::output_folder& folder, const std::filesyst
         if (!(ratios[w].ratio - 3 * ratios[w].standard_error > most)) continue;
         char line[300];
         std::snprintf(line, sizeof line, "%s, %s, %d techniques, %lld samples: %s ratio %.4f +- %.4f\n", text,
-                      base.sampler.c_str(), base.techniques, static_cast<long long>(base.samples_per_pixel),
+                      base.setting.c_str(), base.techniques, static_cast<long long>(base.samples_per_pixel),
                       w == 0 ? "RMSE" : "relMSE", ratios[w].ratio, ratios[w].standard_error);
         worse += line;
       }

@@ -3,7 +3,7 @@
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_OVERHEAD_HPP
 
 #include <direct_lighting/methods.hpp>
-#include <direct_lighting/study.hpp>
+#include <direct_lighting/table.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -49,15 +49,16 @@ void print_overhead(const view& of, const char* sampler, std::int64_t samples, s
     method draw;
     std::vector<double> seconds{};
   };
+  const techniques<M, LightSampling> of_light(of.plates);
   const learning_plan cells = recommended_plan<M>(samples, of.points.width);
-  const learning_plan pixels = papers_plan(samples, M, 10);
+  const learning_plan pixels = render::papers_plan(samples, M, 10);
   const auto learning = [&](const auto& rule, const learning_plan& plan) {
-    return learning_method<M, LightSampling>(of, rule, plan);
+    return render::learning_method(of.points, of_light, rule, plan);
   };
   const auto recommended = recommended_rule<M>(1, of.points.width);
-  const auto linear = make_linear_rule<M>();
+  const auto linear = render::make_linear_rule<M>();
   contender all[] = {
-      {"equal counts", "none", 0, 0, fixed_method<M, LightSampling>(of, equal_counts<M>(samples))},
+      {"equal counts", "none", 0, 0, render::fixed_method(of.points, of_light, render::equal_counts<M>(samples))},
       {"none", "default", 0, 1, learning(idle_rule<M>(), cells)},
       {"default", "default", sizeof(recommended.state()), 1, learning(unheard_rule(recommended), cells)},
       {"linear", "default", sizeof(linear.state()), 1, learning(unheard_rule(linear), cells)},
@@ -72,7 +73,7 @@ void print_overhead(const view& of, const char* sampler, std::int64_t samples, s
     bar.advance();
   }
   const auto lit = std::count_if(of.points.pixels.begin(), of.points.pixels.end(),
-                                 [](const shading_point& p) { return p.plate != shading_point::no_plate; });
+                                 [](const shading_point& p) { return p.part != shading_point::no_part; });
   for (const contender& c : all) {
     std::vector<double> of_rule;
     for (std::size_t i = 0; i < c.seconds.size(); ++i) of_rule.push_back(c.seconds[i] - all[c.idle].seconds[i]);

@@ -2,7 +2,7 @@
 #ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_PRINTED_HPP
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_PRINTED_HPP
 
-#include <direct_lighting/study.hpp>
+#include <direct_lighting/table.hpp>
 #include <papers/comparison.hpp>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ inline void add_order(papers::comparisons& table, const std::string& item, const
 /// Requires that the method was measured so.
 inline const measured_method& of_papers(const std::vector<measured_method>& measured, const std::string& name) {
   return *std::find_if(measured.begin(), measured.end(), [&](const measured_method& m) {
-    return m.of.sampler == "area" && m.of.techniques == 2 && m.of.method == name;
+    return m.of.setting == "area" && m.of.techniques == 2 && m.of.method == name;
   });
 }
 

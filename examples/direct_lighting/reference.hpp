@@ -2,10 +2,11 @@
 #ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_REFERENCE_HPP
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_REFERENCE_HPP
 
-#include <direct_lighting/render.hpp>
-#include <papers/output_folder.hpp>
-#include <render/exr.hpp>
+#include <direct_lighting/scene.hpp>
+#include <direct_lighting/techniques.hpp>
+#include <render/fixed_counts.hpp>
 #include <render/progress.hpp>
+#include <render/reference.hpp>
 
 #include <cstdint>
 #include <cstdio>
@@ -24,27 +25,17 @@ inline std::string reference_name(const scene_options& of, int width, int height
 }
 
 /// The image that others are compared with: five techniques with cone sampling, equal counts, random numbers of its own.
-/// It is read from the folder where it is there, and written there where it is not.
 ///
-/// Errors papers::cannot_run where it cannot be written. A file that cannot be read is replaced.
+/// Errors as kept_image.
 inline render::image<render::rgb> reference(const std::filesystem::path& folder, const scene_options& options,
                                             const scene& of, const render::image<shading_point>& points,
                                             std::int64_t samples, int threads) {
   const std::filesystem::path file = folder / reference_name(options, points.width, points.height, samples);
-  if (std::filesystem::exists(file)) {
-    try {
-      render::image<render::rgb> cached = render::read_exr(file);
-      if (cached.width == points.width && cached.height == points.height) return cached;
-    } catch (const papers::cannot_run&) {
-    }
-  }
-  constexpr std::uint32_t purpose = 1;
-  render::progress bar("reference", render::tile_count(points.width, points.height));
-  const techniques<5, cone_sampling> all(of);
-  const auto picture = render_image(points, all, equal_counts<5>(samples), render::random_stream(0, 0, purpose),
-                                    threads, [&] { bar.advance(); });
-  render::write_exr(file, picture);
-  return picture;
+  return render::kept_image(file, points.width, points.height, [&] {
+    render::progress bar("reference", render::tile_count(points.width, points.height));
+    return render::render_image(points, techniques<5, cone_sampling>(of), render::equal_counts<5>(samples),
+                                render::random_stream(0, 0, render::of_reference), threads, [&] { bar.advance(); });
+  });
 }
 
 }  // namespace direct_lighting

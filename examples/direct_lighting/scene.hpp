@@ -2,10 +2,11 @@
 #ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_SCENE_HPP
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_SCENE_HPP
 
-#include <direct_lighting/direction.hpp>
 #include <direct_lighting/light_sampling.hpp>
-#include <direct_lighting/max_phong.hpp>
+#include <render/direction.hpp>
 #include <render/image.hpp>
+#include <render/light_sample.hpp>
+#include <render/max_phong.hpp>
 #include <render/parallel.hpp>
 #include <render/rgb.hpp>
 
@@ -49,14 +50,10 @@ struct light {
   float power;
 };
 
-/// What a pixel sees: a point of a plate, with what of it does not depend on samples; or no plate, and only `emitted`.
-struct shading_point {
-  static constexpr int no_plate = -1;
-
-  int plate = no_plate;
-  render::rgb emitted{};
+/// What a pixel sees: a point of a plate, its part, with what of it does not depend on samples; or only `emitted`.
+struct shading_point : render::seen_point {
   vector position{0, 0, 0};
-  max_phong surface;
+  render::max_phong surface;
   std::array<seen_light, light_count> lights;
   std::array<unsigned char, light_count>
       hiding{};  ///< for each light, a bit for each light that may be in front of it
@@ -118,21 +115,21 @@ class scene {
       const float distance = entry(seen, direction).distance;
       if (distance < nearest) nearest = distance, point.emitted = lights[at(k)].radiance;
     }
-    int visible = shading_point::no_plate;
+    int visible = shading_point::no_part;
     for (int i = 0; i < plates_; ++i) {
       const float distance = distance_to(plates[at(i)], eye(), direction);
       if (distance < nearest) nearest = distance, visible = i;
     }
-    return visible == shading_point::no_plate ? point : on_plate(visible, eye() + direction * nearest, -direction);
+    return visible == shading_point::no_part ? point : on_plate(visible, eye() + direction * nearest, -direction);
   }
 
   /// A point of plate i, seen from the unit vector `view`.
   shading_point on_plate(int i, const vector& position, const vector& view) const {
     shading_point point;
     const plate& under = plates[at(i)];
-    point.plate = i;
+    point.part = i;
     point.position = position;
-    point.surface = max_phong(under.normal, view, under.exponent);
+    point.surface = render::max_phong(under.normal, view, under.exponent);
     for (int k = 0; k < light_count; ++k) {
       point.lights[at(k)] = seen_light(position, lights[at(k)].centre, lights[at(k)].radius);
     }

@@ -4,9 +4,10 @@
 
 #include <direct_lighting/arguments.hpp>
 #include <direct_lighting/image_files.hpp>
+#include <direct_lighting/methods.hpp>
 #include <direct_lighting/printed.hpp>
 #include <direct_lighting/reference.hpp>
-#include <direct_lighting/study.hpp>
+#include <direct_lighting/table.hpp>
 #include <papers/report.hpp>
 
 #include <algorithm>
@@ -29,7 +30,8 @@ inline std::vector<measured_method> measure_linear(const arguments& given, const
   // Its error is a fifteenth of what 100 samples of two techniques have by area sampling, and adds 0.2 % to it.
   const std::int64_t samples = std::min<std::int64_t>(given.reference_samples, 5000);
   const auto truth = reference(references, options, plates, points, samples, given.threads);
-  const study of{{plates, points}, truth, given.runs, given.seed, given.threads};
+  const view seen{plates, points};
+  const study of{[&](const configuration& one) { return make_method(seen, one); }, truth, given.runs, given.seed, given.threads};
   std::vector<configuration> wanted;
   for (const char* const name : {"brdf", "light", "equal", "newton:1", "linear", "default"}) {
     wanted.push_back({"area", 2, name, 100});
@@ -49,11 +51,11 @@ inline std::string image_table(const std::vector<measured_method>& measured, con
   std::string text =
       "| sampling | techniques | method | picture | α of light sampling | error |\n|---|---|---|---|---|---|\n";
   for (const measured_method& m : measured) {
-    const std::string shown = m.of.sampler == "area" && m.of.techniques == 2 ? "!" : "";
+    const std::string shown = m.of.setting == "area" && m.of.techniques == 2 ? "!" : "";
     const auto image = [&](const char* what, const char* ending) {
       return shown + '[' + what + "](" + folder + image_name(m.of) + ending + ") |";
     };
-    text += "| " + m.of.sampler + " | " + std::to_string(m.of.techniques) + " | " + m.of.method + " | " +
+    text += "| " + m.of.setting + " | " + std::to_string(m.of.techniques) + " | " + m.of.method + " | " +
             image("picture", ".png") + ' ' + (learns(m.of.method) ? image("α", "_alpha.png") : "– |") + ' ' +
             image("error", "_error.png") + '\n';
   }

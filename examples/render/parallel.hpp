@@ -47,6 +47,13 @@ struct tile {
   int x0, y0, x1, y1;
 };
 
+template <class F>
+void for_each_pixel(const tile& t, const F& f) {
+  for (int y = t.y0; y < t.y1; ++y) {
+    for (int x = t.x0; x < t.x1; ++x) f(x, y);
+  }
+}
+
 inline constexpr int tile_size = 16;
 
 inline int tiles_across(int pixels) { return (pixels + tile_size - 1) / tile_size; }

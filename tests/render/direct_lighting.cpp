@@ -2,7 +2,8 @@
 // The plates: geometry as given, one pixel value by every set of techniques, one image for every number of threads.
 #include "catch.hpp"
 
-#include <direct_lighting/render.hpp>
+#include <direct_lighting/techniques.hpp>
+#include <render/fixed_counts.hpp>
 
 #include <phimis/core/estimator.hpp>
 
@@ -16,6 +17,7 @@
 namespace {
 
 using namespace direct_lighting;
+using render::equal_counts;
 
 /// The luminance of a pixel by n_k samples of technique k, with its variance.
 template <int M, class LightSampling>
@@ -45,7 +47,7 @@ std::vector<shading_point> some_points(const scene& of, int size, std::size_t st
   std::vector<shading_point> some;
   std::size_t lit = 0;
   for (const shading_point& p : points.pixels) {
-    if (p.plate != shading_point::no_plate && lit++ % step == 0) some.push_back(p);
+    if (p.part != shading_point::no_part && lit++ % step == 0) some.push_back(p);
   }
   return some;
 }
@@ -95,18 +97,18 @@ TEST_CASE("A pixel sees what lies behind its centre") {
   for (int i = 0; i < 4; ++i) {
     const vector centre = of.plates[static_cast<std::size_t>(i)].centre;
     const shading_point* const seen = pixel_of(centre);
-    REQUIRE(seen->plate == i);
+    REQUIRE(seen->part == i);
     CHECK((seen->position - centre).norm() < 4 * pixel);  // plates are seen at a slant of up to a quarter
     const light& l = of.lights[static_cast<std::size_t>(i)];
-    CHECK(pixel_of(l.centre)->plate == shading_point::no_plate);
+    CHECK(pixel_of(l.centre)->part == shading_point::no_part);
     CHECK(pixel_of(l.centre)->emitted == l.radiance);
     CHECK(pixel_of(l.centre + vector(0, 1.2f * l.radius, 0))->emitted == render::rgb{});
   }
   const scene front({.plates = 1});
   CHECK(std::all_of(points.pixels.begin(), points.pixels.end(),
-                    [](const shading_point& p) { return p.plate < 4 && p.plate >= shading_point::no_plate; }));
+                    [](const shading_point& p) { return p.part < 4 && p.part >= shading_point::no_part; }));
   const auto fewer = shading_points(front, 64, 64, 1);
-  CHECK(std::all_of(fewer.pixels.begin(), fewer.pixels.end(), [](const shading_point& p) { return p.plate <= 0; }));
+  CHECK(std::all_of(fewer.pixels.begin(), fewer.pixels.end(), [](const shading_point& p) { return p.part <= 0; }));
 }
 
 TEST_CASE("Options that make no scene are refused by name") {

@@ -3,7 +3,7 @@
 #include "catch.hpp"
 #include "random.hpp"
 
-#include <direct_lighting/max_phong.hpp>
+#include <render/max_phong.hpp>
 
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace {
 
-using namespace direct_lighting;
+using namespace render;
 
 /// Seen at `degrees` from the normal, which is no axis.
 max_phong surface(float degrees, float exponent, float diffuse = 0.5f, float specular = 0.5f) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_MAX_PHONG_HPP
-#define PHIMIS_EXAMPLES_DIRECT_LIGHTING_MAX_PHONG_HPP
+#ifndef PHIMIS_EXAMPLES_RENDER_MAX_PHONG_HPP
+#define PHIMIS_EXAMPLES_RENDER_MAX_PHONG_HPP
 
-#include <direct_lighting/direction.hpp>
+#include <render/direction.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-namespace direct_lighting {
+namespace render {
 
 /// The max-Phong BRDF at a point with normal N that is seen from the direction V, and sampling in proportion to it.
 ///
@@ -78,6 +78,6 @@ class max_phong {
   float lobe_ = 0;
 };
 
-}  // namespace direct_lighting
+}  // namespace render
 
-#endif  // PHIMIS_EXAMPLES_DIRECT_LIGHTING_MAX_PHONG_HPP
+#endif  // PHIMIS_EXAMPLES_RENDER_MAX_PHONG_HPP

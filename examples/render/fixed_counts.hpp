@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_RENDER_HPP
-#define PHIMIS_EXAMPLES_DIRECT_LIGHTING_RENDER_HPP
+#ifndef PHIMIS_EXAMPLES_RENDER_FIXED_COUNTS_HPP
+#define PHIMIS_EXAMPLES_RENDER_FIXED_COUNTS_HPP
 
-#include <direct_lighting/scene.hpp>
-#include <direct_lighting/techniques.hpp>
 #include <render/image.hpp>
+#include <render/light_sample.hpp>
 #include <render/parallel.hpp>
 #include <render/random_stream.hpp>
 #include <render/rgb.hpp>
@@ -15,17 +14,18 @@
 
 #include <cstdint>
 
-namespace direct_lighting {
+namespace render {
 
 /// One pixel by multi-sample MIS with the same counts everywhere: n_k samples of technique k, balance heuristic.
 ///
 ///     F = (1/N) Σ_k Σ_j f(x_kj) / Σ_i α_i p_i(x_kj),   α_i = n_i/N
 ///
 /// Sums of 256 are added in double: a reference of many samples is as exact as float.
-template <int M, class LightSampling>
-render::rgb render_pixel(const shading_point& from, const techniques<M, LightSampling>& all,
-                         const phimis::counts<M>& n, const render::random_stream& random, std::uint32_t pixel) {
-  if (from.plate == shading_point::no_plate) return from.emitted;
+template <class Point, light_techniques<Point> Techniques>
+rgb render_pixel(const Point& from, const Techniques& all, const phimis::counts<Techniques::count>& n,
+                 const random_stream& random, std::uint32_t pixel) {
+  constexpr int M = Techniques::count;
+  if (from.part == Point::no_part) return from.emitted;
   std::int64_t total = 0;
   for (const std::int64_t count : n) total += count;
   phimis::fractions<float, M> alpha{};
@@ -35,7 +35,7 @@ render::rgb render_pixel(const shading_point& from, const techniques<M, LightSam
   std::uint32_t index = 0;
   for (int k = 0; k < M; ++k) {
     for (std::int64_t j = 0; j < n[k];) {
-      render::rgb part{};
+      rgb part{};
       for (int i = 0; i < 256 && j < n[k]; ++i, ++j) {
         const auto u = random(pixel, index++);
         const light_sample<M> sample = all.draw(from, k, u[0], u[1], u[2]);
@@ -49,19 +49,15 @@ render::rgb render_pixel(const shading_point& from, const techniques<M, LightSam
 }
 
 /// The image of one run. `after_tile` is called after each tile, from any thread.
-template <int M, class LightSampling, class AfterTile>
-render::image<render::rgb> render_image(const render::image<shading_point>& points,
-                                        const techniques<M, LightSampling>& all, const phimis::counts<M>& n,
-                                        const render::random_stream& random, int threads,
-                                        const AfterTile& after_tile) {
-  render::image<render::rgb> picture(points.width, points.height);
-  render::for_each_tile(points.width, points.height, threads, [&](const render::tile& t) {
-    for (int y = t.y0; y < t.y1; ++y) {
-      for (int x = t.x0; x < t.x1; ++x) {
-        const auto pixel = static_cast<std::uint32_t>(y * points.width + x);
-        picture(x, y) = render_pixel(points(x, y), all, n, random, pixel);
-      }
-    }
+template <class Point, light_techniques<Point> Techniques, class AfterTile>
+image<rgb> render_image(const image<Point>& points, const Techniques& all, const phimis::counts<Techniques::count>& n,
+                        const random_stream& random, int threads, const AfterTile& after_tile) {
+  image<rgb> picture(points.width, points.height);
+  for_each_tile(points.width, points.height, threads, [&](const tile& t) {
+    for_each_pixel(t, [&](int x, int y) {
+      const auto pixel = static_cast<std::uint32_t>(y * points.width + x);
+      picture(x, y) = render_pixel(points(x, y), all, n, random, pixel);
+    });
     after_tile();
   });
   return picture;
@@ -73,6 +69,6 @@ phimis::counts<M> equal_counts(std::int64_t samples) {
   return phimis::split_largest_remainder(phimis::equal_fractions<double, M>(), samples);
 }
 
-}  // namespace direct_lighting
+}  // namespace render
 
-#endif  // PHIMIS_EXAMPLES_DIRECT_LIGHTING_RENDER_HPP
+#endif  // PHIMIS_EXAMPLES_RENDER_FIXED_COUNTS_HPP

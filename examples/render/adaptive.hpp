@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_ADAPTIVE_HPP
-#define PHIMIS_EXAMPLES_DIRECT_LIGHTING_ADAPTIVE_HPP
+#ifndef PHIMIS_EXAMPLES_RENDER_ADAPTIVE_HPP
+#define PHIMIS_EXAMPLES_RENDER_ADAPTIVE_HPP
 
-#include <direct_lighting/scene.hpp>
-#include <direct_lighting/techniques.hpp>
 #include <render/image.hpp>
+#include <render/light_sample.hpp>
 #include <render/parallel.hpp>
 #include <render/random_stream.hpp>
 #include <render/rgb.hpp>
@@ -20,7 +19,7 @@
 #include <span>
 #include <vector>
 
-namespace direct_lighting {
+namespace render {
 
 /// Samples of a pixel between which its cell learns, and what one of them weighs in the estimate.
 struct planned_batch {
@@ -34,7 +33,7 @@ struct planned_batch {
 
 /// When and where fractions are learnt.
 struct learning_plan {
-  /// Pixels across a cell: those of one cell that see the same plate share a rule. 1: every pixel learns alone.
+  /// Pixels across a cell: those of one cell that see the same part share a rule. 1: every pixel learns alone.
   int cell = 16;
   /// Pixels between two updates of a cell; each batch of a cell ends with one.
   int pixels_per_update = 32;
@@ -44,8 +43,8 @@ struct learning_plan {
 /// An image and the fractions at which the last batch of each of its pixels was drawn.
 template <int M>
 struct learnt_image {
-  render::image<render::rgb> picture;
-  render::image<phimis::fractions<float, M>> fractions;
+  image<rgb> picture;
+  image<phimis::fractions<float, M>> fractions;
 };
 
 /// The pixels of one cell, all batches of them, with one rule.
@@ -54,10 +53,10 @@ struct learnt_image {
 ///
 /// The fractions of a pixel's batch depend on samples of other pixels and of its own earlier batches: each batch is
 /// unbiased, and so is their sum with weights that look at no sample.
-template <int M, class LightSampling, class Rule>
-void render_cell(const render::image<shading_point>& points, const techniques<M, LightSampling>& all,
-                 std::span<const std::uint32_t> pixels, Rule& rule, const learning_plan& plan,
-                 const render::random_stream& random, learnt_image<M>& into) {
+template <class Point, light_techniques<Point> Techniques, class Rule>
+void render_cell(const image<Point>& points, const Techniques& all, std::span<const std::uint32_t> pixels, Rule& rule,
+                 const learning_plan& plan, const random_stream& random, learnt_image<Techniques::count>& into) {
+  constexpr int M = Techniques::count;
   // Neighbours take turns that are far apart, so that what was learnt late leaves no pattern.
   std::size_t stride = pixels.size() * 618 / 1000 + 1;
   while (std::gcd(stride, pixels.size()) != 1) ++stride;
@@ -86,20 +85,20 @@ void render_cell(const render::image<shading_point>& points, const techniques<M,
       }
       const std::uint32_t pixel = pixels[at];
       const bool observed = i % batch.observed == 0;
-      render::rgb sum{};
+      rgb sum{};
       for (int k = 0; k < M; ++k) {
         for (std::int64_t j = 0; j < n[k]; ++j) {
           const auto u = random(pixel, of[i].drawn++);
           const light_sample<M> x = all.draw(points.pixels[pixel], k, u[0], u[1], u[2]);
           const float q = phimis::mixture(alpha, x.pdfs);
           if (q > 0) sum = sum + x.f * (1 / q);
-          if (observed) rule.observe({render::luminance(x.f), x.pdfs, q, k});
+          if (observed) rule.observe({luminance(x.f), x.pdfs, q, k});
         }
       }
       // The weighted mean of the batches so far.
       of[i].weight += weight * static_cast<float>(samples);
       of[i].owed = 0;
-      render::rgb& mean = into.picture.pixels[pixel];
+      rgb& mean = into.picture.pixels[pixel];
       mean = mean + (sum - mean * static_cast<float>(samples)) * (weight / of[i].weight);
       into.fractions.pixels[pixel] = alpha;
     }
@@ -107,38 +106,35 @@ void render_cell(const render::image<shading_point>& points, const techniques<M,
   }
 }
 
-/// The image of one run whose fractions are learnt by rule_of(plate), one rule for each cell. `after_tile` is called after
+/// The image of one run whose fractions are learnt by rule_of(part), one rule for each cell. `after_tile` is called after
 /// each tile, from any thread.
 ///
 /// Requires in each batch a sample for each technique: with fewer, a technique that alone reaches a point has none.
-template <int M, class LightSampling, class RuleOf, class AfterTile>
-learnt_image<M> render_adaptively(const render::image<shading_point>& points, const techniques<M, LightSampling>& all,
-                                  const RuleOf& rule_of, const learning_plan& plan,
-                                  const render::random_stream& random, int threads, const AfterTile& after_tile) {
-  learnt_image<M> result{{points.width, points.height}, {points.width, points.height}};
-  render::for_each_tile(points.width, points.height, threads, [&](const render::tile& t) {
+template <class Point, light_techniques<Point> Techniques, class RuleOf, class AfterTile>
+learnt_image<Techniques::count> render_adaptively(const image<Point>& points, const Techniques& all,
+                                                  const RuleOf& rule_of, const learning_plan& plan,
+                                                  const random_stream& random, int threads,
+                                                  const AfterTile& after_tile) {
+  learnt_image<Techniques::count> result{{points.width, points.height}, {points.width, points.height}};
+  for_each_tile(points.width, points.height, threads, [&](const tile& t) {
     std::vector<std::uint32_t> cell;
-    const auto finish = [&](int plate) {
-      if (cell.empty()) return;
-      auto learning = rule_of(plate);
-      render_cell(points, all, std::span<const std::uint32_t>(cell), learning, plan, random, result);
-      cell.clear();
-    };
-    for (int plate = 0; plate < 4; ++plate) {
-      for (int y0 = t.y0; y0 < t.y1; y0 += plan.cell) {
-        for (int x0 = t.x0; x0 < t.x1; x0 += plan.cell) {
-          for (int y = y0; y < std::min(y0 + plan.cell, t.y1); ++y) {
-            for (int x = x0; x < std::min(x0 + plan.cell, t.x1); ++x) {
-              if (points(x, y).plate == plate) cell.push_back(static_cast<std::uint32_t>(y * points.width + x));
-            }
-          }
-          finish(plate);
+    for (int y0 = t.y0; y0 < t.y1; y0 += plan.cell) {
+      for (int x0 = t.x0; x0 < t.x1; x0 += plan.cell) {
+        const tile of{x0, y0, std::min(x0 + plan.cell, t.x1), std::min(y0 + plan.cell, t.y1)};
+        int parts = 0;
+        for_each_pixel(of, [&](int x, int y) {
+          parts = std::max(parts, points(x, y).part + 1);
+          if (points(x, y).part == Point::no_part) result.picture(x, y) = points(x, y).emitted;
+        });
+        for (int part = 0; part < parts; ++part) {
+          cell.clear();
+          for_each_pixel(of, [&](int x, int y) {
+            if (points(x, y).part == part) cell.push_back(static_cast<std::uint32_t>(y * points.width + x));
+          });
+          if (cell.empty()) continue;
+          auto rule = rule_of(part);
+          render_cell(points, all, std::span<const std::uint32_t>(cell), rule, plan, random, result);
         }
-      }
-    }
-    for (int y = t.y0; y < t.y1; ++y) {
-      for (int x = t.x0; x < t.x1; ++x) {
-        if (points(x, y).plate == shading_point::no_plate) result.picture(x, y) = points(x, y).emitted;
       }
     }
     after_tile();
@@ -146,6 +142,6 @@ learnt_image<M> render_adaptively(const render::image<shading_point>& points, co
   return result;
 }
 
-}  // namespace direct_lighting
+}  // namespace render
 
-#endif  // PHIMIS_EXAMPLES_DIRECT_LIGHTING_ADAPTIVE_HPP
+#endif  // PHIMIS_EXAMPLES_RENDER_ADAPTIVE_HPP

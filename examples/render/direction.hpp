@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#ifndef PHIMIS_EXAMPLES_DIRECT_LIGHTING_DIRECTION_HPP
-#define PHIMIS_EXAMPLES_DIRECT_LIGHTING_DIRECTION_HPP
+#ifndef PHIMIS_EXAMPLES_RENDER_DIRECTION_HPP
+#define PHIMIS_EXAMPLES_RENDER_DIRECTION_HPP
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace direct_lighting {
+namespace render {
 
 using vector = Eigen::Vector3f;
 
@@ -41,6 +41,6 @@ inline float turn(const vector& axis, const vector& direction) {
   return u < 0 ? u + 1 : u;
 }
 
-}  // namespace direct_lighting
+}  // namespace render
 
-#endif  // PHIMIS_EXAMPLES_DIRECT_LIGHTING_DIRECTION_HPP
+#endif  // PHIMIS_EXAMPLES_RENDER_DIRECTION_HPP
