@@ -5,10 +5,12 @@
 # or where it may not install, it says what to install and fails.
 set -eu
 
-# what=package: a command, a header below /usr or /usr/local, or the sanitizers of clang++.
+# what=package: a command, a file below /usr or /usr/local, or the sanitizers of clang++.
 examples="g++=g++ cmake=cmake ninja=ninja-build include/eigen3=libeigen3-dev include/boost/version.hpp=libboost-dev
           include/CLI/CLI.hpp=libcli11-dev gnuplot=gnuplot-nox include/png.h=libpng-dev
-          include/OpenEXR=libopenexr-dev include/Random123=librandom123-dev"
+          include/OpenEXR=libopenexr-dev include/Random123=librandom123-dev include/embree3=libembree-dev
+          include/assimp=libassimp-dev include/stb=libstb-dev
+          share/blender/datafiles/studiolights/world=blender-data"
 tests="$examples clang++=clang clang-sanitizers=libclang-rt-dev include/catch2=catch2
        include/benchmark/benchmark.h=libbenchmark-dev"
 case ${1-} in
@@ -19,7 +21,7 @@ esac
 
 is_there() {
   case $1 in
-    include/*) [ -e "/usr/$1" ] || [ -e "/usr/local/$1" ] ;;
+    include/* | share/*) [ -e "/usr/$1" ] || [ -e "/usr/local/$1" ] ;;
     clang-sanitizers) echo 'int main() {}' | clang++ -fsanitize=address,undefined -x c++ - -o /dev/null 2>/dev/null ;;
     *) command -v "$1" >/dev/null ;;
   esac

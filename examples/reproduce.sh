@@ -10,7 +10,7 @@ usage="usage: examples/reproduce.sh [--quick|--full] [FOLDER]
   --full    the papers' own protocol, repeated; without either, within ten minutes on two cores
   --help    this"
 
-programs="tsallis_figures linear_heuristic_figures variance_tables direct_lighting"
+programs="tsallis_figures linear_heuristic_figures variance_tables direct_lighting environment_lighting"
 effort=
 folder=
 for option; do

@@ -3,108 +3,74 @@
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_CONVERGENCE_HPP
 
 #include <direct_lighting/table.hpp>
-#include <papers/gnuplot.hpp>
+#include <papers/log_log_figure.hpp>
 #include <papers/report.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <limits>
+#include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 // Errors against samples and seconds, both axes logarithmic.
 
 namespace direct_lighting {
 
-/// What a figure shows of one configuration.
-struct convergence_point {
-  double samples, seconds;
-  double rmse, root_relmse;  ///< both fall as the root of the samples
-};
-
+/// What is compared.
 struct convergence_curve {
   const char* title;
   const char* colour;
   int techniques;
   const char* method;
-  std::vector<convergence_point> points{};
 };
-
-/// One figure: `y` against `x`, a line of slope −1/2 beside it.
-inline papers::captioned_figure convergence_figure(const std::string& name, const std::string& title,
-                                                   const std::string& caption,
-                                                   const std::vector<convergence_curve>& curves, const char* x_title,
-                                                   double convergence_point::*x, const char* y_title,
-                                                   double convergence_point::*y) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  papers::figure figure{.title = title,
-                        .x_title = x_title,
-                        .y_title = y_title,
-                        .x = {infinity, 0},
-                        .y = {infinity, 0},
-                        .x_scale = papers::axis_scale::logarithmic,
-                        .y_scale = papers::axis_scale::logarithmic};
-  std::string csv = "techniques,method,x,error\n";
-  for (const convergence_curve& c : curves) {
-    papers::plot_series series{c.title, "linespoints linewidth 2 pointtype 7 pointsize 0.6", c.colour, {}};
-    for (const convergence_point& p : c.points) {
-      series.points.emplace_back(p.*x, p.*y);
-      figure.x = {std::min(figure.x.lower, p.*x), std::max(figure.x.upper, p.*x)};
-      figure.y = {std::min(figure.y.lower, p.*y), std::max(figure.y.upper, p.*y)};
-      char line[200];
-      std::snprintf(line, sizeof line, "%d,%s,%.6g,%.6g\n", c.techniques, c.method, p.*x, p.*y);
-      csv += line;
-    }
-    figure.series.push_back(std::move(series));
-  }
-  const double left = figure.x.lower, right = figure.x.upper, top = 1.1 * figure.y.upper;
-  figure.series.push_back({"slope −1/2",
-                           "lines linewidth 1.5 dashtype (10,6)",
-                           papers::colour::grey,
-                           {{left, top}, {right, top * std::sqrt(left / right)}}});
-  figure.x = {left / 1.1, right * 1.1};
-  figure.y = {figure.y.lower / 1.1, 1.1 * top};
-  return {name, caption, figure, csv};
-}
 
 /// Four figures for each sampler. Runs are for 50 samples; with others, as many as take the same time, at least two.
 inline std::vector<papers::captioned_figure> convergence_figures(const study& plates) {
   std::vector<papers::captioned_figure> figures;
+  const convergence_curve curves[] = {{"equal counts, 2 techniques", papers::colour::black, 2, "equal"},
+                                      {"Tsallis γ = 0.1, 2 techniques", papers::colour::orange, 2, "tsallis:0.1"},
+                                      {"Tsallis γ = 2, 2 techniques", papers::colour::green, 2, "tsallis:2"},
+                                      {"default, 2 techniques", papers::colour::blue, 2, "default"},
+                                      {"default, 5 techniques", papers::colour::vermillion, 5, "default"}};
   for (const std::string sampler : {"area", "cone"}) {
-    std::vector<convergence_curve> curves{{"equal counts, 2 techniques", papers::colour::black, 2, "equal"},
-                                          {"Tsallis γ = 0.1, 2 techniques", papers::colour::orange, 2, "tsallis:0.1"},
-                                          {"Tsallis γ = 2, 2 techniques", papers::colour::green, 2, "tsallis:2"},
-                                          {"default, 2 techniques", papers::colour::blue, 2, "default"},
-                                          {"default, 5 techniques", papers::colour::vermillion, 5, "default"}};
+    // Errors that fall as the root of the samples; of each, against samples and against seconds.
+    std::array<std::vector<papers::log_log_curve>, 4> of;
+    for (const convergence_curve& c : curves) {
+      for (auto& one : of) one.push_back({std::to_string(c.techniques) + ',' + c.method, c.title, c.colour});
+    }
     for (const std::int64_t samples : {10, 20, 50, 100, 200, 500, 1000}) {
       std::vector<configuration> wanted;
       for (const convergence_curve& c : curves) wanted.push_back({sampler, c.techniques, c.method, samples});
       study at = plates;
       at.runs = std::max(2, static_cast<int>(plates.runs * 50 / samples));
       const auto measured = at.measure(wanted, sampler + ", " + std::to_string(samples) + " samples");
-      for (std::size_t i = 0; i < curves.size(); ++i) {
+      for (std::size_t i = 0; i < measured.size(); ++i) {
         const render::image_error error = measured[i].error();
-        curves[i].points.push_back(
-            {static_cast<double>(samples), measured[i].seconds, error.rmse, std::sqrt(error.relmse)});
+        const double errors[] = {error.rmse, std::sqrt(error.relmse)};
+        for (std::size_t e = 0; e < 2; ++e) {
+          of[2 * e][i].points.emplace_back(static_cast<double>(samples), errors[e]);
+          of[2 * e + 1][i].points.emplace_back(measured[i].seconds, errors[e]);
+        }
       }
     }
-    const std::string title =
-        "Direct lighting, " + sampler + " sampling: errors fall alike, five techniques start lower";
-    const auto draw = [&](const std::string& error, const char* file, const char* y_title,
-                          double convergence_point::*y) {
-      const std::string name = "direct_lighting_" + sampler + '_' + file;
-      const std::string caption = error + " with " + sampler + " sampling, against ";
-      figures.push_back(convergence_figure(name + "_samples", title, caption + "samples per pixel", curves,
-                                           "samples per pixel", &convergence_point::samples, y_title, y));
-      figures.push_back(convergence_figure(name + "_seconds", title, caption + "the time of an image", curves,
-                                           "time of an image  (s)", &convergence_point::seconds, y_title, y));
-    };
-    draw("RMSE", "rmse", "RMSE  (radiance, √ of the sum over pixels)", &convergence_point::rmse);
-    draw("√ relMSE", "relmse", "√ relMSE  (no unit)", &convergence_point::root_relmse);
+    const char* const names[][3] = {{"RMSE", "rmse", "RMSE  (radiance, √ of the sum over pixels)"},
+                                    {"√ relMSE", "relmse", "√ relMSE  (no unit)"}};
+    for (std::size_t e = 0; e < 4; ++e) {
+      const auto& [error, file, y_title] = names[e / 2];
+      const bool time = e % 2 == 1;
+      figures.push_back(papers::log_log_figure{
+          .name = "direct_lighting_" + sampler + '_' + file + (time ? "_seconds" : "_samples"),
+          .title = "Direct lighting, " + sampler + " sampling: errors fall alike, five techniques start lower",
+          .caption = error + (" with " + sampler) + " sampling, against " +
+                     (time ? "the time of an image" : "samples per pixel"),
+          .x_title = time ? "time of an image  (s)" : "samples per pixel",
+          .y_title = y_title,
+          .slope = -0.5,
+          .slope_title = "slope −1/2",
+          .csv_header = "techniques,method,x,error"}(of[e]));
+    }
   }
   return figures;
 }

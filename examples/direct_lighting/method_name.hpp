@@ -3,13 +3,11 @@
 #define PHIMIS_EXAMPLES_DIRECT_LIGHTING_METHOD_NAME_HPP
 
 #include <render/method.hpp>
+#include <render/method_name.hpp>
 
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 namespace direct_lighting {
@@ -20,27 +18,11 @@ using render::configuration;
 /// Whether fractions are learnt.
 inline bool learns(const std::string& method) { return method != "brdf" && method != "light" && method != "equal"; }
 
-/// "tsallis:0.5" is of the family tsallis, with γ = 0.5.
-struct method_name {
-  std::string family;
-  double gamma = 0;
-};
+using render::method_name;
 
 /// Errors std::invalid_argument where no method has that name.
 inline method_name parse_method(const std::string& text) {
-  for (const char* const family : {"brdf", "light", "equal", "linear", "default", "variance"}) {
-    if (text == family) return {text};
-  }
-  for (const std::string family : {"tsallis", "newton"}) {
-    if (text.rfind(family + ':', 0) != 0) continue;
-    method_name name{family};
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data() + family.size() + 1, end, name.gamma);
-    if (read.ec == std::errc() && read.ptr == end && name.gamma > 0 && std::isfinite(name.gamma)) return name;
-    throw std::invalid_argument("--method " + text + ": " + family + ":G needs a number G > 0");
-  }
-  throw std::invalid_argument("--method " + text +
-                              ": not one of brdf, light, equal, tsallis:G, newton:G, linear, default, variance");
+  return render::parse_method(text, {"brdf", "light", "equal", "linear", "default", "variance"}, {"tsallis", "newton"});
 }
 
 /// Errors std::invalid_argument where nothing can render this, in one line.

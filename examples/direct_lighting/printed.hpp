@@ -16,20 +16,7 @@
 
 namespace direct_lighting {
 
-/// A row of which noise may decide: `z` standard errors are between it and the edge of agreement, below 0 beyond it.
-///
-/// What three of them could turn is as expected either way. The note is for what does not agree.
-inline void add_noisy(papers::comparisons& table, const std::string& item, const std::string& printed,
-                      const std::string& computed, double z, papers::expectation expected, const std::string& note) {
-  using papers::expectation;
-  const bool agrees = z >= 0;
-  const bool chance = std::fabs(z) <= 3;
-  const std::string why = expected == expectation::differs ? note
-                          : chance                         ? "noise: three standard errors reach what agrees"
-                                                           : "";
-  if (chance) expected = agrees ? expectation::agrees : expectation::differs;
-  table.statement(item, printed, computed, agrees, expected, agrees ? "" : why);
-}
+using papers::add_noisy;
 
 inline std::string with_error(const mean_ratio& r) {
   return papers::with_decimals(r.ratio, 3) + " ± " + papers::with_decimals(r.standard_error, 3);

@@ -123,6 +123,20 @@ class comparisons {
   std::vector<comparison> rows_;
 };
 
+/// A row of which noise may decide: `z` standard errors are between it and the edge of agreement, below 0 beyond it.
+///
+/// What three of them could turn is as expected either way. The note is for what does not agree.
+inline void add_noisy(comparisons& table, const std::string& item, const std::string& printed,
+                      const std::string& computed, double z, expectation expected, const std::string& note) {
+  const bool agrees = z >= 0;
+  const bool chance = std::fabs(z) <= 3;
+  const std::string why = expected == expectation::differs ? note
+                          : chance                         ? "noise: three standard errors reach what agrees"
+                                                           : "";
+  if (chance) expected = agrees ? expectation::agrees : expectation::differs;
+  table.statement(item, printed, computed, agrees, expected, agrees ? "" : why);
+}
+
 }  // namespace papers
 
 #endif  // PHIMIS_EXAMPLES_PAPERS_COMPARISON_HPP

@@ -53,7 +53,7 @@ inline std::string markdown(const std::vector<captioned_figure>& figures) {
 }
 
 /// The parts of the report by their keys, in its order: a paper each, and what both T and L render.
-inline constexpr const char* part_keys[] = {"T", "L", "V", "direct_lighting"};
+inline constexpr const char* part_keys[] = {"T", "L", "V", "direct_lighting", "environment_lighting"};
 
 namespace detail {
 

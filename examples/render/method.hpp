@@ -48,12 +48,12 @@ method fixed_method(const image<Point>& points, const Techniques& all, const phi
   };
 }
 
-/// Learns by rule_of(part).
-template <class Point, light_techniques<Point> Techniques, class RuleOf>
+/// Learns by rule_of(part), and by rule_of(part, start) where the plan says so.
+template <class Point, light_techniques<Point> Techniques, class RuleOf, class Heuristic = phimis::balance>
 method learning_method_of(const image<Point>& points, const Techniques& all, const RuleOf& rule_of,
-                          const learning_plan& plan) {
-  return [&points, all, rule_of, plan](const auto& random, int threads, const auto& after) {
-    auto learnt = render_adaptively(points, all, rule_of, plan, random, threads, after);
+                          const learning_plan& plan, const Heuristic& heuristic = {}) {
+  return [&points, all, rule_of, plan, heuristic](const auto& random, int threads, const auto& after) {
+    auto learnt = render_adaptively(points, all, heuristic, rule_of, plan, random, threads, after);
     rendering result{std::move(learnt.picture), {}};
     for (int k = 0; k < Techniques::count; ++k) {
       result.fractions.push_back(map(learnt.fractions, [k](const auto& alpha) { return alpha[k]; }));
@@ -63,10 +63,10 @@ method learning_method_of(const image<Point>& points, const Techniques& all, con
 }
 
 /// Learns by copies of a rule.
-template <class Point, light_techniques<Point> Techniques, class Rule>
-method learning_method(const image<Point>& points, const Techniques& all, const Rule& rule,
-                       const learning_plan& plan) {
-  return learning_method_of(points, all, [rule](int) { return rule; }, plan);
+template <class Point, light_techniques<Point> Techniques, class Rule, class Heuristic = phimis::balance>
+method learning_method(const image<Point>& points, const Techniques& all, const Rule& rule, const learning_plan& plan,
+                       const Heuristic& heuristic = {}) {
+  return learning_method_of(points, all, [rule](int) { return rule; }, plan, heuristic);
 }
 
 /// The papers' protocol: every pixel alone, iterations of the same size and weight, the first one of equal counts.

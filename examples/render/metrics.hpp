@@ -37,6 +37,17 @@ struct image_error {
   }
 };
 
+/// (I−R)², mean over the channels, of each pixel.
+inline image<float> squared_error_map(const image<rgb>& picture, const image<rgb>& reference) {
+  PHIMIS_EXPECTS(picture.width == reference.width && picture.height == reference.height);
+  image<float> errors(picture.width, picture.height);
+  for (std::size_t i = 0; i < errors.pixels.size(); ++i) {
+    const rgb d = picture.pixels[i] - reference.pixels[i];
+    errors.pixels[i] = mean(d * d);
+  }
+  return errors;
+}
+
 /// (I−R)²/(R² + 0.01), mean over the channels, of each pixel.
 inline image<float> relative_error_map(const image<rgb>& picture, const image<rgb>& reference) {
   PHIMIS_EXPECTS(picture.width == reference.width && picture.height == reference.height);

@@ -24,9 +24,10 @@ struct measured_method {
 
   rendering first_run{};
   image<float> error_map{};  ///< (I−R)²/(R² + 0.01), mean over the runs
+  image<float> squares{};    ///< (I−R)², mean over the channels and the runs
 
   /// Once they are written: those of all methods would take much memory.
-  void forget_images() { first_run = {}, error_map = {}; }
+  void forget_images() { first_run = {}, error_map = {}, squares = {}; }
 
   image_error error() const {
     image_error sum;
@@ -60,6 +61,7 @@ struct study {
       methods.push_back(make(one));
       measured.push_back({one});
       measured.back().error_map = image<float>(reference.width, reference.height);
+      measured.back().squares = measured.back().error_map;
     }
     progress bar(label, std::int64_t{runs} * static_cast<std::int64_t>(wanted.size()) *
                             tile_count(reference.width, reference.height));
@@ -69,14 +71,19 @@ struct study {
         auto [seconds, current] = timed([&] { return methods[m](random, threads, [&] { bar.advance(); }); });
         measured[m].seconds += seconds / runs;
         measured[m].errors.push_back(compare(current.picture, reference));
-        const image<float> errors = relative_error_map(current.picture, reference);
-        for (std::size_t i = 0; i < errors.pixels.size(); ++i) {
-          measured[m].error_map.pixels[i] += errors.pixels[i] / static_cast<float>(runs);
-        }
+        add(relative_error_map(current.picture, reference), measured[m].error_map);
+        add(squared_error_map(current.picture, reference), measured[m].squares);
         if (run == 0) measured[m].first_run = std::move(current);
       }
     }
     return measured;
+  }
+
+ private:
+  void add(const image<float>& errors, image<float>& mean) const {
+    for (std::size_t i = 0; i < errors.pixels.size(); ++i) {
+      mean.pixels[i] += errors.pixels[i] / static_cast<float>(runs);
+    }
   }
 };
 

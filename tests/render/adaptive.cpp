@@ -97,7 +97,7 @@ TEST_CASE("Fractions that stay equal give the image of equal counts") {
   const render::random_stream random(1, 0);
   const auto equal = [](int) { return phimis::fixed_fractions<float, 5>(); };
   const auto by_plan = [&](const learning_plan& plan) {
-    return render_adaptively(points, all, equal, plan, random, 1, nothing).picture;
+    return render_adaptively(points, all, phimis::balance{}, equal, plan, random, 1, nothing).picture;
   };
   const auto expected = render_image(points, all, equal_counts<5>(20), random, 1, nothing);
   // Sums of 20 numbers in float, in two orders.
@@ -129,7 +129,7 @@ TEST_CASE("Every pixel draws all its samples, and none more") {
   for (learning_plan plan : {papers_plan(53, 2, 5), recommended_plan<2>(53, 200), recommended_plan<5>(53, 200)}) {
     for (planned_batch& batch : plan.batches) batch.observed = 1;
     std::int64_t observed = 0;
-    render_adaptively(points, techniques<2, area_sampling>(of), [&](int) { return counting_rule(observed); }, plan,
+    render_adaptively(points, techniques<2, area_sampling>(of), phimis::balance{}, [&](int) { return counting_rule(observed); }, plan,
                       render::random_stream(1, 0), 1, nothing);
     CHECK(observed == 53 * lit);
   }
