@@ -44,7 +44,8 @@ inline bool learns(const std::string& method) {
   return method != "map" && method != "brdf" && method != "equal" && method != "equal3";
 }
 
-/// Below, a stage would have no sample for each technique.
+/// Below, a stage of three techniques would leave no choice; nor would the fewest samples of a pixel.
+inline constexpr std::int64_t fewest_in_a_stage = 10;
 inline constexpr std::int64_t fewest_samples = 30;
 
 /// V Sec. 7: every pixel alone, a pilot of .2 N at equal counts, then 8 stages of .1 N, all of the same weight.
@@ -60,14 +61,18 @@ inline float floor_of(float wanted, std::int64_t stage) { return std::max(wanted
 /// What the library recommends for many samples per pixel: cells of pixels learn where to start, each pixel goes on alone.
 ///
 /// Shadows are as fine as pixels, and a cell is right for none of them; a pixel alone starts from nothing, and what it has
-/// not met yet may be a highlight. So it starts at a mixture of three parts of its cell's fractions and one of equal ones,
-/// which count as 30 samples, and learns after each fifth of its samples.
+/// not met yet may be a highlight. So it starts at three parts of its cell's fractions and one of equal counts of map and
+/// BRDF, which count as 30 samples, and learns in stages of a tenth and of a fifth of its samples. With fewer than 100 it
+/// would learn little alone, and its cell goes on for it.
 inline learning_plan recommended_plan(std::int64_t samples) {
-  const std::int64_t pilot = samples / 10, stage = samples / 5;
-  return {.cell = 16,
-          .pixels_per_update = 16,
-          .batches = {{pilot, 0.5, 0.25}},
-          .own = {{stage}, {stage}, {stage}, {samples - pilot - 3 * stage}}};
+  const std::int64_t tenth = std::max(fewest_in_a_stage, samples / 10), fifth = samples / 5;
+  learning_plan plan{.cell = 16, .pixels_per_update = 16, .batches = {{tenth, 0.5, 0.25}}};
+  if (samples < 100) {
+    plan.batches.push_back({samples - tenth});
+  } else {
+    plan.own = {{tenth}, {tenth}, {fifth}, {fifth}, {samples - 3 * tenth - 2 * fifth}};
+  }
+  return plan;
 }
 
 struct recommended_rules {
@@ -77,7 +82,8 @@ struct recommended_rules {
   rule operator()(int) const { return rule({}, render::options_of<M>(floor, 30), 0.6f); }
   rule operator()(int, const phimis::fractions<float, M>& cell) const {
     auto options = render::options_of<M>(floor, 30);
-    for (int k = 0; k < M; ++k) options.start[k] = 0.75f * cell[k] + 0.25f / M;
+    const phimis::fractions<float, M> map_and_brdf{0.25f, 0.25f, 0.5f};
+    for (int k = 0; k < M; ++k) options.start[k] = 0.75f * cell[k] + 0.25f * map_and_brdf[k];
     return rule({}, options);
   }
 
@@ -121,7 +127,7 @@ inline render::method make_method(const view& of, const std::string& text, std::
   if (name.family == "tsallis") {
     return render::tsallis_method(of.points, two, name.gamma, plan_of_v(samples), samples);
   }
-  return render::learning_method_of(of.points, three, recommended_rules{floor_of(0.05f, samples / 5)},
+  return render::learning_method_of(of.points, three, recommended_rules{floor_of(0.05f, std::max(fewest_in_a_stage, stage))},
                                     recommended_plan(samples));
 }
 
