@@ -20,8 +20,8 @@ namespace environment_lighting {
 ///
 ///     whole(ω) ∝ luminance(ω);   bright(ω), rest(ω): the same, on the brightest region and off it
 ///
-/// The brightest region is the smallest that emits half of the power; where all texels are alike there is none, and bright
-/// and rest are both the whole. A black map has uniform densities.
+/// The brightest region is the smallest that emits half of the power; where nothing off it has light, as where all texels
+/// are alike, there is none, and bright and rest are both the whole. A black map has uniform densities.
 ///
 /// Requires finite radiance that is not negative.
 class environment_map {
@@ -75,9 +75,10 @@ class environment_map {
       sum += static_cast<double>(at(order[i])) *
              static_cast<double>(on_.solid_angle(static_cast<int>(order[i]) / radiance_.width));
     }
-    // All of the same luminance are in it.
+    // All of the same luminance are in it; what is left must have some light.
     const float least = i > 0 ? at(order[i - 1]) : 0.0f;
-    return at(order.back()) < least ? least : 0.0f;
+    const auto left = std::find_if(order.begin(), order.end(), [&](std::size_t j) { return at(j) < least; });
+    return left != order.end() && at(*left) > 0 ? least : 0.0f;
   }
 
   render::image<render::rgb> radiance_;

@@ -74,7 +74,7 @@ inline void smooth(mesh& of) {
 /// A unit sphere.
 inline mesh sphere() {
   mesh of = detail::surface(384, 192, false, [](float u, float v) {
-    const float sine = std::sin(pi * v);
+    const float sine = v < 1 ? std::sin(pi * v) : 0.0f;  // which π of 24 bits does not give
     return vector(sine * std::cos(2 * pi * u), std::cos(pi * v), sine * std::sin(2 * pi * u));
   });
   of.normals = of.positions;
