@@ -30,6 +30,7 @@ struct log_log_figure {
   double slope;
   std::string slope_title;
   std::string csv_header;
+  double y_most = std::numeric_limits<double>::infinity();  ///< what is above is said to be, and not drawn
 
   captioned_figure operator()(const std::vector<log_log_curve>& curves) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -42,14 +43,20 @@ struct log_log_figure {
                    .y_scale = axis_scale::logarithmic};
     std::string csv = csv_header + '\n';
     for (const log_log_curve& c : curves) {
-      drawing.series.push_back({c.title, "linespoints linewidth 2 pointtype 7 pointsize 0.6", c.colour, c.points});
+      plot_series series{c.title, "linespoints linewidth 2 pointtype 7 pointsize 0.6", c.colour, {}};
       for (const auto& [x, y] : c.points) {
         drawing.x = {std::min(drawing.x.lower, x), std::max(drawing.x.upper, x)};
-        drawing.y = {std::min(drawing.y.lower, y), std::max(drawing.y.upper, y)};
+        if (y <= y_most) {
+          drawing.y = {std::min(drawing.y.lower, y), std::max(drawing.y.upper, y)};
+          series.points.emplace_back(x, y);
+        }
         char line[200];
         std::snprintf(line, sizeof line, "%s,%.6g,%.6g\n", c.key.c_str(), x, y);
         csv += line;
       }
+      if (series.points.size() < c.points.size()) series.title += series.points.empty() ? ", above" : ", partly above";
+      if (series.points.empty()) series.points.emplace_back(1, 0);  // an entry of the legend alone
+      drawing.series.push_back(std::move(series));
     }
     const double left = drawing.x.lower, right = drawing.x.upper, top = 1.1 * drawing.y.upper;
     drawing.series.push_back({slope_title,
