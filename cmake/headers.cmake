@@ -24,6 +24,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/newton_raphson.hpp
     phimis/core/observation.hpp
     phimis/core/pack.hpp
+    phimis/core/pack_power.hpp
     phimis/core/pair_sums.hpp
     phimis/core/power_terms.hpp
     phimis/core/projection_sums.hpp

@@ -42,7 +42,7 @@ fill() {
 }
 
 status=0
-for page in README.md docs/policies.md docs/embedding.md docs/direct_lighting.md docs/speed.md; do
+for page in README.md docs/policies.md docs/embedding.md docs/direct_lighting.md docs/environment_lighting.md docs/speed.md; do
   [ -f "$page" ] || continue
   filled=$(mktemp)
   fill "$page" >"$filled"

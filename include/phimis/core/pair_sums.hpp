@@ -156,7 +156,7 @@ struct variance_terms {
 
 /// pair_sums of any divergence that has a score. γ = ½, 1, 2 run without a power function.
 ///
-/// Requires α_k κ_k >= 0. At α_k = 0 a sum may be infinite.   Cost one division a row, and one pow for other γ.
+/// Requires α_k κ_k >= 0. At α_k = 0 a sum may be infinite.   Cost one division a row, two and two polynomials for other γ.
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const columns<Real, 2>& rows,
                                       const pair_point<Real>& at) noexcept {

@@ -5,8 +5,8 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/pack.hpp>
+#include <phimis/core/pack_power.hpp>
 
-#include <cmath>
 #include <type_traits>
 
 namespace phimis::detail {
@@ -34,11 +34,11 @@ struct power_two {
   }
 };
 struct power_any {
-  static constexpr bool packed = false;
+  static constexpr bool packed = true;
   double beta;
   template <class Real, class V>
   PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V& x, const V& r) const noexcept {
-    return w * x * std::pow(u * r, static_cast<Real>(beta));
+    return w * x * power_of_packs<Real>(static_cast<Real>(beta))(u * r);
   }
 };
 
