@@ -10,7 +10,7 @@ examples="g++=g++ cmake=cmake ninja=ninja-build include/eigen3=libeigen3-dev inc
           include/CLI/CLI.hpp=libcli11-dev gnuplot=gnuplot-nox include/png.h=libpng-dev
           include/OpenEXR=libopenexr-dev include/Random123=librandom123-dev"
 tests="$examples clang++=clang clang-sanitizers=libclang-rt-dev include/catch2=catch2
-       include/benchmark/benchmark.h=libbenchmark-dev"
+       include/benchmark/benchmark.h=libbenchmark-dev include/rapidcheck.h=librapidcheck-dev"
 case ${1-} in
   tests) wanted=$tests ;;
   examples) wanted=$examples ;;
