@@ -333,3 +333,12 @@ TEST_CASE("The search for the price of a variance ends, however large the prior"
   CHECK(rule.fractions()[0] >= options.floors[0]);
   CHECK(rule.fractions()[0] + rule.fractions()[1] == Approx(1));
 }
+
+TEST_CASE("A row exactly at a kink of infinite slope does not hide the prior") {
+  // One row, normalised: g/p = 1 at every mixture, and only the prior has a minimum, at the start.
+  phimis::exact_minimiser<phimis::reversed<phimis::pearson_vajda>, phimis::fixed_table<double, 2, 4>> rule(
+      {{1.5}}, {.start = {{0.9, 0.1}}, .prior = 1});
+  rule.observe({0.078125, {{1.25, 2}}, 0.25, 0});
+  rule.update();
+  CHECK(rule.fractions()[0] == Approx(0.9).epsilon(1e-6));
+}
