@@ -12,7 +12,7 @@ examples="g++=g++ cmake=cmake ninja=ninja-build include/eigen3=libeigen3-dev inc
           include/assimp=libassimp-dev include/stb=libstb-dev
           share/blender/datafiles/studiolights/world=blender-data"
 tests="$examples clang++=clang clang-sanitizers=libclang-rt-dev include/catch2=catch2
-       include/benchmark/benchmark.h=libbenchmark-dev"
+       include/benchmark/benchmark.h=libbenchmark-dev include/rapidcheck.h=librapidcheck-dev"
 case ${1-} in
   tests) wanted=$tests ;;
   examples) wanted=$examples ;;

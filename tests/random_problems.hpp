@@ -232,22 +232,6 @@ inline random_problem make_problem(problem_kind kind, std::uint64_t seed, double
   return on;
 }
 
-/// Over how many decades, up and down, f, pdfs and q may be wide such that numbers stay doubles: 30, or fewer where
-///
-///     s = −t^β, β < −1   1/t³ of numbers from 1e-120 to 1e120 is no double;
-///     s = t^β, β < ½     a fraction is the 1/β-th power of a ratio of densities;
-///     s = log t          it is the exponential function of one;
-///     others             t² − 1 is t² but for what is rounded off.
-template <class Divergence>
-double decades_of(const Divergence& divergence) {
-  if constexpr (phimis::has_exponent<Divergence>::value) {
-    const double beta = divergence.exponent();
-    return beta == 0 ? 1 : beta < -1 ? -30 / beta : beta > 0 && beta < 0.5 ? 60 * beta : 30;
-  } else {
-    return 3;
-  }
-}
-
 /// f(name, divergence) for one of the divergences that a minimiser of smooth problems takes.
 inline constexpr int smooth_divergences = 20;
 template <class F>

@@ -1,18 +1,18 @@
 #!/bin/sh
-# Runs the tests from a fresh clone: installs what is missing, runs the workflow of every preset with tests, then the
-# quick reproduction. The last line counts the tests of all.
+# Runs the tests from a fresh clone: installs what is missing, runs the workflow of every preset with tests, a minute of
+# fuzzing, then the quick reproduction. The last line counts the tests of all.
 set -u
 
 usage="usage: tests/run.sh [--fast]
 
-  --fast   only the preset dev: g++, no sanitizers, no reproduction
+  --fast   only the preset dev: g++, no sanitizers, no fuzzing, no reproduction
   --help   this"
 
 presets="dev dev-clang sanitize"
-reproduce=yes
+more="fuzz reproduction"
 for option; do
   case $option in
-    --fast) presets=dev reproduce= ;;
+    --fast) presets=dev more= ;;
     --help) echo "$usage"; exit 0 ;;
     *) echo "tests/run.sh: unknown option '$option'; --help lists them" >&2; exit 2 ;;
   esac
@@ -54,16 +54,19 @@ for preset in $presets; do
 "
 done
 
-if [ -n "$reproduce" ]; then
-  echo "== reproduction"
+for step in $more; do
+  echo "== $step"
   begin=$(date +%s)
   good=1
-  sh examples/reproduce.sh --quick </dev/null || good=0
+  case $step in
+    fuzz) sh tests/fuzz.sh 60 </dev/null || good=0 ;;
+    reproduction) sh examples/reproduce.sh --quick </dev/null || good=0 ;;
+  esac
   passed=$((passed + good))
   failed=$((failed + 1 - good))
-  summary="${summary}reproduction: $good passed, $((1 - good)) failed, $(($(date +%s) - begin)) s
+  summary="$summary$step: $good passed, $((1 - good)) failed, $(($(date +%s) - begin)) s
 "
-fi
+done
 
 echo "== summary"
 printf '%s' "$summary"

@@ -32,15 +32,20 @@ struct program_help {
   const char* full;
 };
 
+/// Adds the options to a program.
+inline void add_options(CLI::App& app, arguments& to, const program_help& help) {
+  app.add_option("--output", to.output, "folder for figures, their data and tables")->capture_default_str();
+  app.add_option("--seed", to.seed, "of all random streams")->capture_default_str();
+  auto* const quick = app.add_flag("--quick", to.quick, help.quick);
+  app.add_flag("--full", to.full, help.full)->excludes(quick);
+}
+
 /// Parses the command line and runs reproduce(arguments), which returns the exit status; 2 where it cannot run.
 template <class Reproduce>
 int run_program(int argc, char** argv, const program_help& help, const Reproduce& reproduce) {
   arguments given;
   CLI::App app(help.about);
-  app.add_option("--output", given.output, "folder for figures, their data and tables")->capture_default_str();
-  app.add_option("--seed", given.seed, "of all random streams")->capture_default_str();
-  auto* const quick = app.add_flag("--quick", given.quick, help.quick);
-  app.add_flag("--full", given.full, help.full)->excludes(quick);
+  add_options(app, given, help);
   try {
     app.parse(argc, argv);
     return reproduce(given);

@@ -55,7 +55,7 @@ void validate(const count_independent<Heuristic>& heuristic) {
 template <class Real>
 void validate(std::span<const Real> start, std::span<const Real> floors, std::span<const Real> costs,
               std::span<const bool> frozen, Real prior) {
-  const Real rounding = 8 * static_cast<Real>(start.size()) * std::numeric_limits<Real>::epsilon();
+  const Real rounding = 4 * static_cast<Real>(start.size()) * std::numeric_limits<Real>::epsilon();
   Real least = 0;
   Real bound = 0;
   Real all = 0;

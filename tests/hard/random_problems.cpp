@@ -15,7 +15,7 @@
 // A difference of objectives is relative to λ, too: F(α) − F(β) ≤ Σ_k (β_k − α_k) G_k, and the G are of the size of λ.
 #include "random_problems.hpp"
 #include "catch.hpp"
-#include "divergences.hpp"
+#include "true_score.hpp"
 
 #include <phimis/solver/minimise.hpp>
 
@@ -35,7 +35,6 @@ namespace {
 
 using phimis::control_variate;
 using phimis::rule_status;
-using real = long double;
 using reals = std::vector<real>;
 
 constexpr int problems_of_a_kind = 56;  // of 18 kinds
@@ -43,61 +42,6 @@ constexpr int problems_of_a_kind = 56;  // of 18 kinds
 std::uint64_t seed_of_run() {
   const char* given = std::getenv("PHIMIS_SEED");
   return given ? std::strtoull(given, nullptr, 10) : 1;
-}
-
-struct true_score {
-  real value, slope;
-  real size;  ///< of the terms of s, and its slope where it may cross zero
-};
-
-/// Without the library: the power family by its power, others by algebra on φ.
-template <class D>
-true_score score_of(const D& divergence, real t) {
-  if constexpr (phimis::has_exponent<D>::value) {
-    const real b = divergence.exponent();
-    if (b == 0) return {std::log(t), 1, std::fabs(std::log(t)) + 1};
-    if (!(t > 0)) return {0, 0, 0};
-    const real power = b == 1 ? t : b == 2 ? t * t : b == 0.5L ? std::sqrt(t) : std::pow(t, b);
-    return {b > 0 ? power : -power, std::fabs(b) * power, power};
-  } else if (t > 0) {
-    const true_phi phi = true_phi_at(divergence, t);
-    const real slope = t * t * phi.second;
-    return {t * phi.first - phi.value, slope, 1 + std::fabs(t * phi.first) + std::fabs(phi.value) + slope};
-  } else {
-    return {-1, 0, 1};  // Pearson–Vajda
-  }
-}
-inline true_score score_of(const phimis::reversed<phimis::pearson_vajda>& divergence, real t) {
-  if (!(t > 0)) return {0, 0, 0};  // a lost sample: no pdf reaches it
-  const true_phi phi = true_phi_at(divergence.forward, 1 / t);
-  return {-phi.first, phi.second / t, divergence.forward.k * std::pow(1 + 1 / t, divergence.forward.k - 1)};
-}
-
-/// s(0) where it is finite.
-template <class D>
-real score_of_zero(const D&) {
-  return 0;
-}
-inline real score_of_zero(const phimis::pearson_vajda&) { return -1; }
-
-/// −∫ s(u/p) dp: p φ(u/p) but for a multiple of p and for what does not depend on p.
-template <class D>
-real primitive(const D& divergence, real u, real p) {
-  constexpr real infinity = std::numeric_limits<real>::infinity();
-  if (!(u > 0)) return 0;
-  const real t = p > 0 ? u / p : infinity;
-  if constexpr (phimis::has_exponent<D>::value) {
-    const real b = divergence.exponent();
-    if (!(p > 0)) return b < 1 ? 0 : infinity;
-    if (b == 1) return -u * std::log(p);
-    if (b == 0) return -p * (std::log(t) + 1);
-    return std::pow(u, b) * std::pow(p, 1 - b) / (b > 0 ? b - 1 : 1 - b);
-  } else {
-    return p > 0 ? p * (true_phi_at(divergence, t).value + score_of_zero(divergence)) : infinity;
-  }
-}
-inline real primitive(const phimis::reversed<phimis::pearson_vajda>& divergence, real u, real p) {
-  return u > 0 ? u * true_phi_at(divergence.forward, p / u).value : 0;
 }
 
 /// A problem in long double, its pdfs normalised where the control variate is on, g = |f|/μ̂ in place of f where the

@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: MIT
-// Defects that reviews found, each kept as a test of what must hold.
+// Defects that reviews and fuzzers found, each kept as a test of what must hold.
 #include "catch.hpp"
 
 #include <phimis/analysis/optimum.hpp>
 #include <phimis/phimis.hpp>
+#include <phimis/solver/minimise.hpp>
+
+#include <Eigen/Core>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 
 namespace {
 
 using phimis::control_variate;
 using phimis::observation;
+using phimis::rule_options;
 using phimis::rule_status;
 
 struct uniform_on {
@@ -248,4 +253,92 @@ TEST_CASE("Combinations may take their arguments by value, and must return weigh
   CHECK(phimis::is_finite(phimis::integrate(f, two, equal).estimate));
   const auto nothing = [](auto, auto) {};
   CHECK_THROWS_AS(phimis::integrate(f, two, nothing), std::invalid_argument);
+}
+
+// What the fuzzers of tests/fuzz found.
+
+TEMPLATE_TEST_CASE("The unit of costs changes no fraction, with a prior neither", "", float, double) {
+  const phimis::per_technique<TestType, 3> costs{{TestType(2.5), 1, 2}};
+  const auto learn = [&](auto make, TestType unit) {
+    rule_options<TestType, 3> options;
+    options.start = {{TestType(0.75), TestType(0.125), TestType(0.125)}};
+    options.prior = 2;
+    for (int k = 0; k < 3; ++k) options.costs[k] = costs[k] * unit;
+    auto rule = make(options);
+    for (int j = 0; j < 30; ++j) {
+      const TestType x = (static_cast<TestType>(j) + TestType(0.5)) / 30;
+      rule.observe({1 + x * x, {{1, 2 * x, 2 - 2 * x}}, 1, j % 3});
+    }
+    CHECK(rule.update() == rule_status::updated);
+    return rule.fractions();
+  };
+  const auto compare = [&](auto make) {
+    const auto one = learn(make, 1);
+    // Powers of two, near the ends of the range: no rounding.
+    for (const int exponent : {sizeof(TestType) == 4 ? -120 : -1000, sizeof(TestType) == 4 ? 120 : 1000}) {
+      const auto other = learn(make, std::ldexp(TestType(1), exponent));
+      for (int k = 0; k < 3; ++k) CHECK(other[k] == Approx(one[k]).epsilon(1e-5));
+    }
+  };
+  using options = rule_options<TestType, 3>;
+  compare([](const options& given) { return phimis::exact_rule<3>(phimis::hellinger{}, given); });
+  compare([](const options& given) { return phimis::exact_rule<3>(phimis::chi_squared{}, given); });
+  compare([](const options& given) { return phimis::sigma_rule<3>(given); });
+  compare([](const options& given) { return phimis::inverse_variance_rule<3>(given); });
+  compare([](const options& given) { return phimis::second_order_rule<3>(given); });
+}
+
+TEST_CASE("A prior of 1e300 samples is the start, under any costs") {
+  rule_options<double, 3> options;
+  options.start = {{0.5, 0.25, 0.25}};
+  options.prior = 1e300;
+  options.costs = {{1e-6, 1, 1e6}};
+  auto rule = phimis::sigma_rule<3>(options);
+  for (int j = 0; j < 6; ++j) rule.observe({1.0 + j, {{1, 2, 3}}, 2, j % 3});
+  CHECK(rule.update() == rule_status::updated);
+  for (int k = 0; k < 3; ++k) CHECK(rule.fractions()[k] == Approx(options.start[k]).epsilon(0.02));
+}
+
+TEST_CASE("Where a technique has no scale among the rows the fractions stay, and the status says so") {
+  // The control variate divides by Σ p_k/q, whose inverse is no number.
+  const double least = 4 * std::numeric_limits<double>::denorm_min();
+  const Eigen::VectorXd f{{1, 2}};
+  const Eigen::VectorXd q{{1, 1}};
+  const Eigen::MatrixXd two{{1, least}, {2, least}};
+  const Eigen::MatrixXd three{{1, 1, least}, {2, 1, least}};
+  const auto check = [&](const Eigen::MatrixXd& pdfs) {
+    const phimis::minimum found = phimis::minimise(phimis::chi_squared{}, f, pdfs, q);
+    CHECK(found.status == rule_status::not_converged);
+    for (const double fraction : found.fractions) CHECK(fraction == 1.0 / static_cast<double>(pdfs.cols()));
+  };
+  check(two);
+  check(three);
+  phimis::exact_minimiser<phimis::chi_squared, phimis::fixed_table<double, 2, 4>> pair;
+  pair.observe({1, {{1, least}}, 1, 0});
+  pair.observe({2, {{2, least}}, 1, 0});
+  CHECK(pair.update() == rule_status::not_converged);
+  CHECK(pair.fractions()[0] == 0.5);
+  CHECK(pair.fractions()[1] == 0.5);
+}
+
+TEST_CASE("The search for the price of a variance ends, however large the prior") {
+  rule_options<double, 2> options;
+  options.start = {{1e-280, 1}};
+  options.floors = {{2e-78, 0.25}};
+  options.prior = 5e303;
+  options.costs = {{1, 0.015625}};
+  auto rule = phimis::exact_rule(phimis::one_sample_variance{}, options);
+  rule.observe({0.078125, {{1e-4, 0.5}}, 0.09375, 1});
+  rule.update();
+  CHECK(rule.fractions()[0] >= options.floors[0]);
+  CHECK(rule.fractions()[0] + rule.fractions()[1] == Approx(1));
+}
+
+TEST_CASE("A row exactly at a kink of infinite slope does not hide the prior") {
+  // One row, normalised: g/p = 1 at every mixture, and only the prior has a minimum, at the start.
+  phimis::exact_minimiser<phimis::reversed<phimis::pearson_vajda>, phimis::fixed_table<double, 2, 4>> rule(
+      {{1.5}}, {.start = {{0.9, 0.1}}, .prior = 1});
+  rule.observe({0.078125, {{1.25, 2}}, 0.25, 0});
+  rule.update();
+  CHECK(rule.fractions()[0] == Approx(0.9).epsilon(1e-6));
 }

@@ -46,6 +46,9 @@ PHIMIS_HOST_DEVICE fractions<Real, M> with_floors(const per_technique<Real, M>& 
                                                   const per_technique<Real, M>& floors) noexcept {
   bool at_floor[M] = {};
   fractions<Real, M> result{};
+  Real sum = 0;
+  for (const Real share : shares) sum += share;
+  const Real unit = is_finite(sum) ? Real(1) : Real(1) / Real(2 * M);  // the sum of large shares may overflow
   for (int pass = 0; pass <= M; ++pass) {
     Real budget = 1;
     Real total = 0;
@@ -55,7 +58,7 @@ PHIMIS_HOST_DEVICE fractions<Real, M> with_floors(const per_technique<Real, M>& 
       if (at_floor[k]) {
         budget -= floors[k];
       } else {
-        total += shares[k];
+        total += unit * shares[k];
         ++unbound;
       }
     }
@@ -66,7 +69,7 @@ PHIMIS_HOST_DEVICE fractions<Real, M> with_floors(const per_technique<Real, M>& 
         result[k] = floors[k];
         continue;
       }
-      result[k] = total > 0 ? budget * (shares[k] / total) : budget / Real(unbound);
+      result[k] = total > 0 ? budget * (unit * shares[k] / total) : budget / Real(unbound);
       if (result[k] < floors[k]) at_floor[k] = changed = true;
     }
     if (!changed) break;

@@ -54,12 +54,13 @@ class inverse_variance_fractions : public rule_base<Real, M, technique_moments<R
       if (sigma > 0 && (!(least > 0) || sigma < least)) least = sigma;
     }
     if (!exact && !(least > 0)) return this->end(rule_status::no_information);
+    const per_technique<Real, M> costs = relative_costs(options.costs);
     per_technique<Real, M> shares{};
     Real total = 0;
     for (int k = 0; k < M; ++k) {
       const Real sigma = known(k) ? this->memory().deviation(k) : Real(-1);
       const Real ratio = sigma > 0 ? least / sigma : Real(0);
-      shares[k] = (exact ? Real(sigma == 0 ? 1 : 0) : ratio * ratio) / options.costs[k];
+      shares[k] = (exact ? Real(sigma == 0 ? 1 : 0) : ratio * ratio) / costs[k];
       total += shares[k];
     }
     const Real n = static_cast<Real>(this->memory().count());

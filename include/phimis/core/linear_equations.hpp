@@ -65,7 +65,7 @@ struct linear_equations {
       sum += x[r];
       terms = std::fmax(terms, std::fabs(x[r]));
     }
-    if (!(std::fabs(sum) > 4 * M * rounding * terms)) return false;
+    if (!(std::fabs(sum) > 4 * M * rounding * terms) || !is_finite(sum)) return false;
     for (int r = 0; r < size; ++r) {
       tau[member[r]] = x[r] / sum;
       if (!is_finite(tau[member[r]])) return false;

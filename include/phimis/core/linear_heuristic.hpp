@@ -83,6 +83,7 @@ class linear_heuristic : public rule_base<Real, M, detail::linear_memory<Real, M
 
   static_assert((Treatment == negative_fractions::best_face) != std::is_same<Table, no_table>::value,
                 "best_face needs a table of samples, the other treatments take none");
+  static_assert(M >= 2, "linear_heuristic needs two techniques to choose from");
   static_assert(M <= 30, "faces are counted in the bits of an int");
 
  public:

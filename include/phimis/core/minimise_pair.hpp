@@ -5,6 +5,7 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/divergence_at.hpp>
+#include <phimis/core/finite.hpp>
 #include <phimis/core/kink.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/minimise_rows.hpp>
@@ -37,7 +38,7 @@ class pair_minimisation {
     silent_ = wanted.silent == silent_technique::kept && (!(mass[0] > 0) || !(mass[1] > 0));
     for (int k = 0; k < 2; ++k) {
       kappa_[k] = wanted.variate == control_variate::on && mass[k] > 0 ? n / mass[k] : 1;
-      kappa_[k] /= static_cast<double>(wanted.costs[k]);
+      kappa_[k] /= static_cast<double>(wanted.costs[k]) / cost_unit(wanted, 2);
     }
     if (detail::needs_mean(divergence)) {
       unit_ /= mean_;
@@ -47,6 +48,9 @@ class pair_minimisation {
 
   PHIMIS_HOST_DEVICE row_minimum minimise(Real* alpha) noexcept {
     if (silent_ || wanted_.frozen[0] || wanted_.frozen[1]) return {};
+    for (const double kappa : kappa_) {
+      if (!(kappa > 0) || !is_finite(kappa)) return {rule_status::not_converged, {}};
+    }
     // The solver's fractions are those of the scaled pdfs: a_k ∝ α_k/κ_k.
     const double floor1 = static_cast<double>(wanted_.floors[0]);
     const double floor2 = static_cast<double>(wanted_.floors[1]);
@@ -75,6 +79,10 @@ class pair_minimisation {
     } else {
       const double first = found.alpha.first * kappa_[0];
       const double second = found.alpha.second * kappa_[1];
+      if (!(first + second > 0) || !is_finite(first + second)) {
+        result.status = rule_status::not_converged;
+        return result;
+      }
       set(alpha, first / (first + second), second / (first + second));
     }
     const bool solved = converged || !(result.solution.residual > 0);

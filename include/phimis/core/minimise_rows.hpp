@@ -4,6 +4,7 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/finite.hpp>
 #include <phimis/core/kink.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/mixture_sums.hpp>
@@ -49,6 +50,20 @@ struct minimisation {
   silent_technique silent = silent_technique::judged;
 };
 
+/// The unit of costs of m techniques in which nothing depends on theirs: what a sample costs at the start, where the prior
+/// is then in units of samples. Of equal costs exactly that cost.
+template <class Real>
+PHIMIS_HOST_DEVICE double cost_unit(const minimisation<Real>& wanted, int m) noexcept {
+  const double first = static_cast<double>(wanted.costs[0]);
+  double mean = 0;  // over the first
+  bool equal = true;
+  for (int k = 0; k < m; ++k) {
+    mean += static_cast<double>(wanted.start[k]) * (static_cast<double>(wanted.costs[k]) / first);
+    equal = equal && wanted.costs[k] == wanted.costs[0];
+  }
+  return equal ? first : first * mean;
+}
+
 /// A minimum, and how good it is.
 struct row_minimum {
   rule_status status = rule_status::no_information;
@@ -92,7 +107,8 @@ PHIMIS_HOST_DEVICE constexpr int minimise_indices(int m) noexcept { return 3 * m
 /// Rows of these two have the sign of f in u.
 ///
 /// Requires largest = max |u| > 0; memory[minimise_doubles<Divergence>(m)], indices[minimise_indices(m)].
-/// Errors   the status: no_information where fewer than two techniques can move, and alpha is not written.
+/// Errors   the status: no_information where fewer than two techniques can move, and not_converged where numbers are so far
+///          apart that a technique's scale is none; alpha is then not written.
 template <class Divergence, class Real>
 class row_minimisation {
  public:
@@ -121,6 +137,9 @@ class row_minimisation {
 
   PHIMIS_HOST_DEVICE row_minimum minimise(Real* alpha) noexcept {
     if (!simplex_.has_freedom() && !alone()) return {};
+    for (int k = 0; k < rows_.m; ++k) {
+      if (!(kappa_[k] > 0) || !is_finite(kappa_[k])) return {rule_status::not_converged, {}};
+    }
     simplex_.to_theta(wanted_.from, theta_);
     simplex_solution found;
     bool local = false;
@@ -132,8 +151,10 @@ class row_minimisation {
     } else {
       found = solve_convex();
     }
-    for (int k = 0; k < rows_.m; ++k) alpha[k] = fixed(k);
-    simplex_.to_fractions(theta_, alpha);
+    if (!simplex_.to_fractions(theta_, alpha)) return {rule_status::not_converged, found};
+    for (int k = 0; k < rows_.m; ++k) {
+      if (held(k)) alpha[k] = fixed(k);
+    }
     if (!(found.residual <= acceptable)) return {rule_status::not_converged, found};
     return {local ? rule_status::local : rule_status::updated, found};
   }
@@ -159,6 +180,8 @@ class row_minimisation {
     return wanted_.silent == silent_technique::judged && simplex_.size() == 1 && simplex_.free() > 0;
   }
 
+  PHIMIS_HOST_DEVICE bool held(int k) const noexcept { return wanted_.frozen[k] || silent_[k] != 0; }
+
   /// The fraction of a technique that cannot move, the floor of another.
   PHIMIS_HOST_DEVICE Real fixed(int k) const noexcept {
     if (wanted_.frozen[k]) return wanted_.start[k];
@@ -168,12 +191,13 @@ class row_minimisation {
   /// From masses to κ, the floors, and the centre of the prior.
   PHIMIS_HOST_DEVICE void constrain() noexcept {
     const double n = static_cast<double>(rows_.n);
+    const double unit = cost_unit(wanted_, rows_.m);
     for (int k = 0; k < rows_.m; ++k) {
       silent_[k] = !(kappa_[k] > 0) ? 1 : 0;
       kappa_[k] = wanted_.variate == control_variate::on && kappa_[k] > 0 ? n / kappa_[k] : 1;
-      if (!detail::is_variance<Divergence>::value) kappa_[k] /= static_cast<double>(wanted_.costs[k]);
+      if (!detail::is_variance<Divergence>::value) kappa_[k] /= static_cast<double>(wanted_.costs[k]) / unit;
     }
-    simplex_.constrain([&](int k) { return wanted_.frozen[k] || silent_[k] != 0; }, [&](int k) { return fixed(k); });
+    simplex_.constrain([&](int k) { return held(k); }, [&](int k) { return fixed(k); });
     double sum = 0;
     for (int k = 0; k < rows_.m; ++k) sum += static_cast<double>(wanted_.start[k]) / kappa_[k];
     for (int k = 0; k < rows_.m; ++k) prior_shares_[k] = static_cast<double>(wanted_.start[k]) / kappa_[k] / sum;
@@ -298,7 +322,7 @@ class row_minimisation {
     };
     look(0);
     const double scale = objective.second_moment() / objective.cost();
-    for (double price = 64 * scale; price > 1e-6 * scale; price /= 4) look(price);
+    for (double share = 64; share > 1e-6; share /= 4) look(share * scale);  // the scale may be near the end of the range
     for (int step = 0; step < 20; ++step) {
       for (int i = 0; i < simplex_.size(); ++i) theta_[i] = best_[i];
       evaluate(objective);

@@ -125,7 +125,8 @@ class newton_raphson : public rule_base<Real, 2, detail::newton_sums<Real>> {
       return this->end(rule_status::not_converged);
     }
     const Real low = options.floors[0];
-    const Real high = 1 - options.floors[1];
+    // Floors that sum to one leave a point, whatever their difference to one rounds to.
+    const Real high = 1 - options.floors[1] > low ? 1 - options.floors[1] : low;
     Real first = alpha[0] + step;
     if (first < 0 || first > 1) ++this->state_.counters.left;
     if (form_ == newton_form::safeguarded) {

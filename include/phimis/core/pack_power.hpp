@@ -82,7 +82,7 @@ PHIMIS_HOST_DEVICE V polynomial(const Real (&c)[N], const V& x) noexcept {
 ///     t = 2^e m,   t^β = 2^n 2^(β e + β log2 m − n)
 ///
 /// Requires t >= 0 and finite, β ≠ 0.
-/// Errors   (2 + |β|/2) ε; where -ffast-math is on and adds β's halves again, (8 + |β| + |β log2 t|/2) ε. 0 or infinite past
+/// Errors   (2 + |β|) ε; where -ffast-math is on and adds β's halves again, (8 + |β| + |β log2 t|/2) ε. 0 or infinite past
 ///          the range of normal numbers, less a factor of 2 at its upper end, and at t = 0. A single number has std::pow.
 template <class Real>
 class power_of_packs {

@@ -5,6 +5,7 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/divergence_at.hpp>
+#include <phimis/core/finite.hpp>
 #include <phimis/core/pack.hpp>
 #include <phimis/core/power_terms.hpp>
 #include <phimis/core/table.hpp>
@@ -119,9 +120,10 @@ struct score_terms {
     const V wx = row.w * row.x;
     const score<Real> s = score_at(divergence, row.u / row.x);
     const V value = s.value - zero;
+    const V slope = is_finite(s.slope) ? s.slope : V(0);  // infinite at a kink of order below 2: no scale, no step
     sums[0] += wx * e * value;
-    sums[1] += wx * e * e * s.slope;
-    sums[2] += wx * ((value < 0 ? -value : value) + s.slope);
+    sums[1] += wx * e * e * slope;
+    sums[2] += wx * ((value < 0 ? -value : value) + slope);
   }
 };
 

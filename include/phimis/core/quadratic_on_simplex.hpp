@@ -87,7 +87,7 @@ PHIMIS_HOST_DEVICE rule_status minimise_quadratic(const double (&a)[M][M], const
   simplex_newton<detail::quadratic_problem<M>> solver(problem, on.size(), memory, indices);
   constexpr double rounding = static_cast<double>(epsilon<Real>);
   const simplex_solution solution = solver.minimise(theta, 4 * rounding);
-  on.to_fractions(theta, alpha);
+  if (!on.to_fractions(theta, alpha)) return rule_status::not_converged;
   return solution.residual <= 1e4 * rounding ? rule_status::updated : rule_status::not_converged;
 }
 

@@ -57,6 +57,18 @@ PHIMIS_HOST_DEVICE constexpr per_technique<Real, M> equal_costs() noexcept {
   return costs;
 }
 
+/// Costs in units of the largest: only their ratios matter, whatever their unit. A cost of less than 1e-150 of it (float:
+/// 1e-18) counts as that, so that neither its inverse nor the product of two is out of range.
+template <class Real, int M>
+PHIMIS_HOST_DEVICE per_technique<Real, M> relative_costs(const per_technique<Real, M>& costs) noexcept {
+  Real largest = 0;
+  for (const Real cost : costs) largest = cost > largest ? cost : largest;
+  constexpr Real least = sizeof(Real) == 8 ? Real(1e-150) : Real(1e-18);
+  per_technique<Real, M> relative{};
+  for (int k = 0; k < M; ++k) relative[k] = costs[k] / largest > least ? costs[k] / largest : least;
+  return relative;
+}
+
 /// What every rule takes: where to start, what to keep, how much to trust the start, what a sample costs.
 ///
 /// Requires start on the simplex; floors_k >= 0, Σ floors <= 1, of frozen techniques the start in place of the floor;
@@ -105,7 +117,13 @@ PHIMIS_HOST_DEVICE fractions<Real, M> share_budget(const per_technique<Real, M>&
     }
   }
   if (movable == M) return with_floors(shares, options.floors);
-  if (movable == 0 || !(left > 0)) return options.start;
+  if (movable == 0) return options.start;
+  if (!(left > 0)) {
+    // Frozen techniques have all, up to rounding: of floors that are rounding, too.
+    for (int k = 0; k < M; ++k)
+      free[k] = options.frozen[k] || options.start[k] > floors[k] ? options.start[k] : floors[k];
+    return free;
+  }
   // The same problem on what is left of the budget.
   for (int k = 0; k < M; ++k) {
     free[k] = options.frozen[k] ? Real(0) : total > 0 ? shares[k] : Real(1);

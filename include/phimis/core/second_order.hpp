@@ -85,6 +85,7 @@ class second_order : public rule_base<Real, M, detail::second_order_sums<Real, M
     double a[M][M];
     const double n = static_cast<double>(of.n);
     const double mean = static_cast<double>(of.f) / n;
+    const per_technique<Real, M> costs = relative_costs(options.costs);
     double mean_cost = 0;
     double kappa[M];
     for (int k = 0, at = 0; k < M; ++k) {
@@ -92,8 +93,8 @@ class second_order : public rule_base<Real, M, detail::second_order_sums<Real, M
       if (!(a[k][k] > 0)) return this->end(rule_status::no_information);
       const double start = static_cast<double>(options.start[k]);
       if (options.prior > 0 && start > 0) a[k][k] += static_cast<double>(options.prior) / n * mean * mean / start;
-      mean_cost += start * static_cast<double>(options.costs[k]);
-      kappa[k] = 1 / static_cast<double>(options.costs[k]);
+      mean_cost += start * static_cast<double>(costs[k]);
+      kappa[k] = 1 / static_cast<double>(costs[k]);
     }
     double b[M] = {};
     for (int k = 0; k < M; ++k) {

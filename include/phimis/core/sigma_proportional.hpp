@@ -61,6 +61,7 @@ class sigma_proportional : public rule_base<Real, M, technique_moments<Real, M>>
   PHIMIS_HOST_DEVICE rule_status update() noexcept {
     const auto& options = this->options_;
     if (!this->memory().any()) return this->end(rule_status::no_information);
+    const per_technique<Real, M> costs = relative_costs(options.costs);
     Real total = 0;     // S = Σ σ_k √c_k
     Real expected = 0;  // Σ π_k c_k
     per_technique<Real, M> sigma{};
@@ -68,9 +69,9 @@ class sigma_proportional : public rule_base<Real, M, technique_moments<Real, M>>
     for (int k = 0; k < M; ++k) {
       if (!this->memory().known(k) && this->state_.fractions[k] > 0) return this->end(rule_status::no_information);
       sigma[k] = this->memory().deviation(k);
-      root[k] = std::sqrt(options.costs[k]);
+      root[k] = std::sqrt(costs[k]);
       total += sigma[k] * root[k];
-      expected += options.start[k] * options.costs[k];
+      expected += options.start[k] * costs[k];
     }
     if (!(total > 0)) return this->end(rule_status::no_information);
     per_technique<Real, M> shares{};
@@ -78,7 +79,7 @@ class sigma_proportional : public rule_base<Real, M, technique_moments<Real, M>>
     for (int k = 0; k < M; ++k) {
       const Real learnt = sigma[k] / total;
       const Real given = options.start[k] * root[k] / expected;
-      shares[k] = (prior > 0 ? std::sqrt(learnt * learnt + prior * given * given) : learnt) / root[k];
+      shares[k] = (prior > 0 ? std::hypot(learnt, std::sqrt(prior) * given) : learnt) / root[k];
     }
     this->state_.fractions = share_budget(shares, options);
     return this->end(rule_status::updated);

@@ -72,7 +72,11 @@ class simplex_newton {
     rounding_ = rounding;
     last_residual_ = 0;
     simplex_solution now;
-    if (!enter(theta, now)) return now;
+    for (int k = 0; k < m_; ++k) best_[k] = theta[k];
+    if (!enter(theta, now)) {
+      for (int k = 0; k < m_; ++k) theta[k] = best_[k];
+      return now;
+    }
     simplex_solution best;
     for (int k = 0; k < m_; ++k) best_[k] = theta[k];
     int stale = 0;

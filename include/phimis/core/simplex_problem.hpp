@@ -78,16 +78,18 @@ class floored_simplex {
     for (int i = 0; i < size_; ++i) beta_[technique_[i]] += free_ * theta[i] / norm_[i];
   }
 
-  /// α_k of θ; exactly the floor where θ is 0.
+  /// α_k of θ; exactly the floor where θ is 0. False, and nothing is written, where κ is so wide that there is none.
   template <class Fractions>
-  PHIMIS_HOST_DEVICE void to_fractions(const double* theta, Fractions& alpha) const noexcept {
+  [[nodiscard]] PHIMIS_HOST_DEVICE bool to_fractions(const double* theta, Fractions& alpha) const noexcept {
     double sum = 0;
     for (int i = 0; i < size_; ++i) sum += theta[i] / norm_[i];
+    if (!(sum > 0) || !is_finite(sum)) return false;
     for (int i = 0; i < size_; ++i) {
       const int k = technique_[i];
       using real = std::remove_reference_t<decltype(alpha[k])>;
       alpha[k] = static_cast<real>(fixed_[k] + free_ * (theta[i] / norm_[i] / sum));
     }
+    return true;
   }
 
   /// The gradient in θ of a gradient in β.

@@ -198,11 +198,12 @@ joint_minimum<M> minimise_jointly(const columns<double, M>& rows, double largest
   for (int k = 0; k < M; ++k) {
     for (std::ptrdiff_t j = 0; j < rows.n; ++j) mass[static_cast<std::size_t>(k)] += rows.w[j] * rows.y[k][j];
   }
+  const per_technique<double, M> costs = relative_costs(options.costs);
   std::array<double, M> kappa{};
   const auto silent = [&](int k) { return !(mass[static_cast<std::size_t>(k)] > 0); };
   for (int k = 0; k < M; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    kappa[i] = (variate == control_variate::on && !silent(k) ? n / mass[i] : 1) / options.costs[k];
+    kappa[i] = (variate == control_variate::on && !silent(k) ? n / mass[i] : 1) / costs[k];
   }
   std::array<double, floored_simplex::doubles(M)> simplex_memory{};
   std::array<int, M> coordinates{};
@@ -243,7 +244,10 @@ joint_minimum<M> minimise_jointly(const columns<double, M>& rows, double largest
   const double digits = 1 + std::sqrt(problem.scale() / problem.objective());
   const double tolerance = 4 * epsilon<double> * digits;
   result.solution = solver.minimise(theta.data(), tolerance);
-  simplex.to_fractions(theta.data(), result.alpha);
+  if (!simplex.to_fractions(theta.data(), result.alpha)) {
+    result.status = rule_status::not_converged;
+    return result;
+  }
   problem.gradient(theta.data(), gradient.data(), sizes.data());
   double cost = 0;
   for (int k = 0; k < M; ++k) {

@@ -104,3 +104,11 @@ TEMPLATE_TEST_CASE("The mixture is the sum of fractions times pdfs", "", float, 
   static_assert(phimis::mixture(alpha, pdfs) == 5, "");
   CHECK(alpha.size() == 3);
 }
+
+TEMPLATE_TEST_CASE("Shares whose sum is no number are shared like any others", "", float, double) {
+  const TestType largest = std::numeric_limits<TestType>::max();
+  const auto alpha = phimis::with_floors<TestType, 3>({{largest, largest, largest / 2}}, {{0, 0, TestType(0.5)}});
+  CHECK(alpha[0] == TestType(0.25));
+  CHECK(alpha[1] == TestType(0.25));
+  CHECK(alpha[2] == TestType(0.5));
+}

@@ -176,3 +176,15 @@ TEST_CASE("Pdfs that differ by rounding alone have no solution") {
   double tau[2];
   CHECK_FALSE(e.solve(on, on.all(), tau));
 }
+
+TEST_CASE("A solution whose sum is no number is none") {
+  phimis::linear_equations<3> equations{};
+  equations.rounding = phimis::epsilon<double>;
+  for (int k = 0; k < 3; ++k) {
+    equations.p[k][k] = 1e-300;
+    equations.f[k] = 1e8;
+  }
+  const phimis::movable_techniques<3> on(phimis::without_floors<double, 3>());
+  double tau[3] = {};
+  CHECK_FALSE(equations.solve(on, on.all(), tau));
+}

@@ -305,3 +305,15 @@ TEST_CASE("With many samples the steps converge to the fractions of a zero-varia
     CHECK(std::fabs(rule.fractions()[0] - 0.3) <= 1e-12);
   });
 }
+
+TEMPLATE_TEST_CASE("A floor that one minus the other's rounds away holds all the same", "", float, double) {
+  const TestType least = std::numeric_limits<TestType>::epsilon() / 64;
+  for (const newton_form form : {newton_form::paper, newton_form::safeguarded}) {
+    newton_raphson<phimis::chi_squared, TestType> rule({}, form, {{{0, 1}}, {{least, 1}}});
+    // All that is seen speaks for the second technique.
+    for (const TestType x : {TestType(1), TestType(2)}) rule.observe({x, {{TestType(0.5), x}}, x, 1});
+    CHECK(rule.update() == rule_status::updated);
+    CHECK(rule.fractions()[0] == least);
+    CHECK(rule.fractions()[1] == 1);
+  }
+}

@@ -35,7 +35,7 @@ double allowed([[maybe_unused]] double beta, [[maybe_unused]] double t) {
 #ifdef __FAST_MATH__  // which adds the two halves of β before they meet the exponent
   return 8 + std::fabs(beta) + std::fabs(beta * std::log2(t)) / 2;
 #else
-  return 2 + std::fabs(beta) / 2;
+  return 2 + std::fabs(beta);
 #endif
 }
 

@@ -254,3 +254,15 @@ TEMPLATE_TEST_CASE("A frozen technique keeps its start even below its floor, the
   CHECK(rule.fractions()[2] >= 0.1 * (1 - 1e-15));
   CHECK(rule.fractions()[1] + rule.fractions()[2] == Approx(0.95).epsilon(1e-14));
 }
+
+TEMPLATE_TEST_CASE("A floor holds beside frozen techniques that have all but rounding", "", float, double) {
+  const TestType least = std::numeric_limits<TestType>::epsilon() / 64;
+  rule_options<TestType, 3> options;
+  options.start = {{TestType(0.25), TestType(0.75), 0}};
+  options.floors = {{0, 0, least}};
+  options.frozen = {{true, true, false}};
+  const auto alpha = phimis::share_budget<TestType, 3>({{1, 1, 1}}, options);
+  CHECK(alpha[0] == TestType(0.25));
+  CHECK(alpha[1] == TestType(0.75));
+  CHECK(alpha[2] == least);
+}

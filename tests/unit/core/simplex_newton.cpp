@@ -169,3 +169,18 @@ TEST_CASE("One coordinate is its own minimum") {
   CHECK(solve(on, theta).residual == 0);
   CHECK(theta[0] == 1);
 }
+
+TEST_CASE("Where no gradient is finite the start is the solution") {
+  struct nowhere : quadratic {
+    double gradient(const double*, double* g, double*) const {
+      g[0] = g[1] = 0;
+      return phimis::infinity<double>;
+    }
+  };
+  nowhere on;
+  on.m = 2;
+  std::vector<double> theta{0.875, 0.125};
+  CHECK(solve(on, theta).residual == phimis::infinity<double>);
+  CHECK(theta[0] == 0.875);
+  CHECK(theta[1] == 0.125);
+}

@@ -1,0 +1,68 @@
+#!/bin/sh
+# Builds the fuzzers of tests/fuzz and runs each for its share of the time, from the seeds in tests/fuzz/corpus and from
+# what earlier runs have found. The last line counts the executions of all.
+set -u
+
+usage="usage: tests/fuzz.sh [SECONDS]
+
+  SECONDS   of all fuzzers together, 60 by default; at least one for each
+  --help    this
+
+What a fuzzer finds is kept in build/fuzz/findings. In numbers, to be made a test of:
+
+  PHIMIS_FUZZ_TELL=1 build/fuzz/tests/fuzz/fuzz_NAME build/fuzz/findings/NAME-crash-..."
+
+case ${1-60} in
+  --help) echo "$usage"; exit 0 ;;
+  *[!0-9]* | '' | 0*) echo "tests/fuzz.sh: '$1' is no number of seconds; --help tells more" >&2; exit 2 ;;
+esac
+[ $# -le 1 ] || { echo "tests/fuzz.sh: one number of seconds, not $*" >&2; exit 2; }
+seconds=${1-60}
+
+cd "$(dirname "$0")/.." || exit 1
+if ! command -v clang++ >/dev/null; then
+  echo "tests/fuzz.sh: no clang++ here; sh cmake/install_packages.sh tests installs it" >&2
+  exit 1
+fi
+cmake --preset fuzz </dev/null || exit 1
+cmake --build --preset fuzz </dev/null || exit 1
+
+names=
+for source in tests/fuzz/*.cpp; do
+  name=$(basename "$source" .cpp)
+  [ ! -x "build/fuzz/tests/fuzz/fuzz_$name" ] || names="$names $name"
+done
+# shellcheck disable=SC2086  # a list of names
+set -- $names
+[ $# -gt 0 ] || { echo "tests/fuzz.sh: no fuzzer was built" >&2; exit 1; }
+share=$((seconds / $#))
+[ "$share" -gt 0 ] || share=1
+
+findings=build/fuzz/findings
+mkdir -p "$findings"
+total=0
+failed=
+for name; do
+  grown=build/fuzz/corpus/$name
+  log=build/fuzz/$name.log
+  mkdir -p "$grown"
+  # A unit that takes 20 seconds is a finding. Long inputs say little that short ones do not.
+  if "build/fuzz/tests/fuzz/fuzz_$name" -max_total_time="$share" -timeout=20 -max_len=600 -print_final_stats=1 \
+    -artifact_prefix="$findings/$name-" "$grown" "tests/fuzz/corpus/$name" </dev/null >"$log" 2>&1; then
+    result=clean
+  else
+    failed="$failed $name"
+    result=FAILED
+    grep -v '^#[0-9]' "$log" | tail -n 60
+  fi
+  executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+  : "${executions:=0}"
+  total=$((total + executions))
+  echo "$name: $executions executions in $share s, $result"
+done
+
+if [ -n "$failed" ]; then
+  echo "fuzz: $total executions of $# fuzzers; failed:$failed; inputs in $PWD/$findings"
+  exit 1
+fi
+echo "fuzz: $total executions of $# fuzzers, no finding"
