@@ -3,21 +3,25 @@
 # what earlier runs have found. The last line counts the executions of all.
 set -u
 
-usage="usage: tests/fuzz.sh [SECONDS]
+usage="usage: tests/fuzz.sh [SECONDS [SEED]]
 
   SECONDS   of all fuzzers together, 60 by default; at least one for each
+  SEED      of what is tried; another one each time by default
   --help    this
 
 What a fuzzer finds is kept in build/fuzz/findings. In numbers, to be made a test of:
 
   PHIMIS_FUZZ_TELL=1 build/fuzz/tests/fuzz/fuzz_NAME build/fuzz/findings/NAME-crash-..."
 
-case ${1-60} in
-  --help) echo "$usage"; exit 0 ;;
-  *[!0-9]* | '' | 0*) echo "tests/fuzz.sh: '$1' is no number of seconds; --help tells more" >&2; exit 2 ;;
-esac
-[ $# -le 1 ] || { echo "tests/fuzz.sh: one number of seconds, not $*" >&2; exit 2; }
+[ "${1-}" != --help ] || { echo "$usage"; exit 0; }
+[ $# -le 2 ] || { echo "tests/fuzz.sh: seconds and a seed, not $*" >&2; exit 2; }
+for number; do
+  case $number in
+    *[!0-9]* | '' | 0*) echo "tests/fuzz.sh: '$number' is no number from 1 on; --help tells more" >&2; exit 2 ;;
+  esac
+done
 seconds=${1-60}
+seed=${2-0}  # which libFuzzer takes for any
 
 cd "$(dirname "$0")/.." || exit 1
 if ! command -v clang++ >/dev/null; then
@@ -47,7 +51,7 @@ for name; do
   log=build/fuzz/$name.log
   mkdir -p "$grown"
   # A unit that takes 20 seconds is a finding. Long inputs say little that short ones do not.
-  if "build/fuzz/tests/fuzz/fuzz_$name" -max_total_time="$share" -timeout=20 -max_len=600 -print_final_stats=1 \
+  if "build/fuzz/tests/fuzz/fuzz_$name" -seed="$seed" -max_total_time="$share" -timeout=20 -max_len=600 -print_final_stats=1 \
     -artifact_prefix="$findings/$name-" "$grown" "tests/fuzz/corpus/$name" </dev/null >"$log" 2>&1; then
     result=clean
   else
