@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // How much error for how much time? N·MSE, bias and seconds of every rule and combination, of peers and of oracle fractions.
 //
-//     bench_error [--csv FILE] [--runs RUNS] [--threads T] [--only PROBLEM]      Markdown tables on standard output
+//     bench_error [--csv FILE] [--runs RUNS] [--most SAMPLES] [--threads T] [--only PROBLEM]      Markdown tables
 //
-// RUNS (20000) runs of 50 and of 500 samples, a tenth and a hundredth of it, at least 50, of 5000 and 50000; rules and
-// combinations that are neither default nor recommended get a fifth, and no 50000. N·MSE is printed in units of the oracle's,
+// RUNS (10000) runs of 50 and of 500 samples, a tenth and a hundredth of it, at least 50, of 5000 and 50000; rules and
+// combinations that are neither default nor recommended get a fifth, and no 50000; nothing has more than SAMPLES. N·MSE is printed in units of the oracle's,
 // V[F] at its counts, which is exact; where that vanishes in units of V[F] at equal counts, where that does, too, as it is.
 // Its standard error is that of the mean over runs. Runs are spread over threads in blocks of fixed seeds: the result does
 // not depend on the number of threads. Seconds are processor time of a thread alone, the median of several groups of runs.
@@ -29,7 +29,8 @@
 namespace {
 
 constexpr std::array<std::int64_t, 4> budgets{50, 500, 5000, 50000};
-std::int64_t runs_wanted = 20000;
+std::int64_t runs_wanted = 10000;
+std::int64_t most = 50000;
 unsigned threads = 2;
 std::FILE* csv = nullptr;
 
@@ -43,6 +44,7 @@ struct result {
 };
 
 std::int64_t runs_of(std::int64_t budget, bench::kind of) {
+  if (budget > most) return 0;
   const std::int64_t least = std::min<std::int64_t>(runs_wanted, 50);
   if (of == bench::kind::other) return budget > 5000 ? 0 : std::max(least, runs_wanted / (budget > 500 ? 50 : 5));
   return std::max(least, runs_wanted / (budget > 5000 ? 100 : budget > 500 ? 10 : 1));
@@ -139,10 +141,9 @@ void table(const bench::problem<M>& on) {
   std::printf("%d technique%s, %d dimension%s; μ = %.6g, V[F] of equal counts %.4g, least V[F] %.4g, at", M,
               M > 1 ? "s" : "", on.dimensions, on.dimensions > 1 ? "s" : "", on.mean, equal, on.least);
   for (const double a : on.best) std::printf(" %.4f", a);
-  std::printf(". N·MSE %s; z is the bias in standard errors.\n\n",
-              vanishes && !(equal > 0) ? "as it is"
-              : vanishes               ? "in units of equal counts'"
-                                       : "in units of the oracle's");
+  std::printf(". N·MSE %s; z is the bias in standard errors.\n\n", vanishes && !(equal > 0) ? "as it is"
+                                                                   : vanishes ? "in units of equal counts'"
+                                                                              : "in units of the oracle's");
   std::puts("| method | 50 | 500 | 5000 | 50000 | z at 50 | at 500 | at 5000 | μs at 500 |");
   std::puts("|---|---|---|---|---|---|---|---|---|");
   for (const auto& by : bench::methods<M>()) {
@@ -167,7 +168,7 @@ void table(const bench::problem<M>& on) {
 }
 
 int usage() {
-  std::puts("usage: bench_error [--csv FILE] [--runs RUNS] [--threads T] [--only PROBLEM]");
+  std::puts("usage: bench_error [--csv FILE] [--runs RUNS] [--most SAMPLES] [--threads T] [--only PROBLEM]");
   return 2;
 }
 
@@ -183,6 +184,8 @@ int main(int argc, char** argv) {
       if (csv == nullptr) return std::perror(argv[i + 1]), 1;
     } else if (option == "--runs") {
       runs_wanted = std::atoll(argv[i + 1]);
+    } else if (option == "--most") {
+      most = std::atoll(argv[i + 1]);
     } else if (option == "--threads") {
       threads = static_cast<unsigned>(std::atoi(argv[i + 1]));
     } else if (option == "--only") {

@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -98,6 +99,7 @@ template <int M>
 std::vector<method<M>> methods() {
   using namespace phimis;
   const integrate_options decided;
+  const integrate_options growing{.growth = 16};
   const integrate_options one_sample{.model = sampling_model::one_sample};
   const auto learnt = exact_rule<M>(chi_squared{}, {.prior = 1});
   std::vector<method<M>> all;
@@ -111,6 +113,8 @@ std::vector<method<M>> methods() {
   add("default", kind::chosen);
   add("default, square_root", kind::chosen, square_root{});
   add("default, pooled", kind::chosen, pooled{});
+  all.push_back(by_integrate<M>("default, growth 16", kind::chosen, growing));
+  all.push_back(by_integrate<M>("default, growth 16, square_root", kind::chosen, growing, square_root{}));
   add("joint, cross_fitted_control_variates", kind::chosen, joint_rule<M>(), cross_fitted_control_variates{});
   add("joint, pooled_control_variates", kind::chosen, joint_rule<M>(), pooled_control_variates{});
 
@@ -153,6 +157,8 @@ std::vector<method<M>> methods() {
   add("second_order_rule", kind::other, second_order_rule<M>());
   add("inverse_variance_rule", kind::other, inverse_variance_rule<M>());
   add("sigma_rule, count_independent weights", kind::other, sigma_rule<M>(), count_independent<balance>{});
+  all.push_back(by_integrate<M>("joint, growth 16, cross_fitted_control_variates", kind::other, growing,
+                                joint_rule<M>(), cross_fitted_control_variates{}));
   add("exact_rule, γ = ½", kind::other, exact_rule<M>(tsallis{0.5}));
   add("exact_rule, Kullback–Leibler", kind::other, exact_rule<M>(kullback_leibler{}));
   add("exact_rule, V[F]", kind::other, exact_rule<M>(multi_sample_variance{}));

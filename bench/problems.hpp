@@ -114,8 +114,16 @@ problem<M> with_exact(problem<M> made, const phimis::analysis::problem<M>& exact
 template <class Paper, int M>
 problem<M> of_paper(const any_techniques<M>& techniques) {
   const phimis::interval domain = Paper::domain();
-  problem<M> made{Paper::name, 1, [](const point& x) { return Paper::f(x[0]); }, techniques, {domain.lower()},
-                  {domain.upper()}, 0, {}, {}, 0};
+  problem<M> made{Paper::name,
+                  1,
+                  [](const point& x) { return Paper::f(x[0]); },
+                  techniques,
+                  {domain.lower()},
+                  {domain.upper()},
+                  0,
+                  {},
+                  {},
+                  0};
   return with_exact<M>(made, {Paper::f, Paper::techniques(), domain});
 }
 template <class Paper, class... Techniques>
@@ -160,9 +168,9 @@ inline problem<3> linear_4() {
 }
 inline problem<4> linear_5() {
   const phimis::interval domain = papers::linear_5::domain();
-  return detail::of_paper_with<papers::linear_5>(
-      phimis::gaussian(-1.5, 1, domain), phimis::gaussian(1.5, 0.75, domain), phimis::gaussian(-0.5, 1, domain),
-      phimis::gaussian(0.5, 1, domain));
+  return detail::of_paper_with<papers::linear_5>(phimis::gaussian(-1.5, 1, domain),
+                                                 phimis::gaussian(1.5, 0.75, domain),
+                                                 phimis::gaussian(-0.5, 1, domain), phimis::gaussian(0.5, 1, domain));
 }
 inline problem<3> variance_1() { return detail::of_variance_paper<papers::variance_1>(); }
 /// Example 6 of the linear heuristic's paper, too.
@@ -177,7 +185,8 @@ inline problem<3> variance_4() { return detail::of_variance_paper<papers::varian
 struct plane {
   static double f(const point& x) {
     const double bumps = 2 * isotropic_normal<2>{{-1.4, 0.1}, 0.6}.pdf(x) +
-                         isotropic_normal<2>{{1.5, 0.5}, 0.9}.pdf(x) + 0.5 * isotropic_normal<2>{{0, 1.5}, 0.8}.pdf(x);
+                         isotropic_normal<2>{{1.5, 0.5}, 0.9}.pdf(x) +
+                         0.5 * isotropic_normal<2>{{0, 1.5}, 0.8}.pdf(x);
     return bumps * (1 + 0.5 * std::sin(2 * x[0] + x[1]));
   }
   static std::array<isotropic_normal<2>, 4> densities() {
@@ -216,8 +225,8 @@ struct plane {
     };
     // A node is an observation with density 1/(n · weight).
     const Eigen::VectorXd q = Eigen::VectorXd::Constant(n, 1 / (weight * static_cast<double>(n)));
-    const auto found = phimis::minimise(phimis::multi_sample_variance{}, *f_at, *pdfs, q,
-                                        {.variate = phimis::control_variate::off});
+    const auto found =
+        phimis::minimise(phimis::multi_sample_variance{}, *f_at, *pdfs, q, {.variate = phimis::control_variate::off});
     for (int k = 0; k < 4; ++k) made.best[k] = found.fractions[k];
     made.least = made.variance(made.best);
     return made;
@@ -265,9 +274,9 @@ struct ball {
                     {},
                     {},
                     0};
-    return detail::with_exact<3>(made, {[](double r) { return area(r) * at_distance(r); },
-                                        phimis::technique_set(radial{narrow}, radial{middle}, radial{wide}),
-                                        phimis::interval(0, 16)});
+    return detail::with_exact<3>(
+        made, {[](double r) { return area(r) * at_distance(r); },
+               phimis::technique_set(radial{narrow}, radial{middle}, radial{wide}), phimis::interval(0, 16)});
   }
 };
 

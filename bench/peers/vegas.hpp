@@ -39,9 +39,8 @@ double vegas(const Problem& on, std::int64_t budget, std::uint64_t seed) {
   auto upper = on.upper;
   double estimate = 0;
   double standard_error = 0;
-  gsl_monte_vegas_integrate(&f, lower.data(), upper.data(), dimensions,
-                            static_cast<std::size_t>(budget) / iterations, random.get(), state.get(), &estimate,
-                            &standard_error);
+  gsl_monte_vegas_integrate(&f, lower.data(), upper.data(), dimensions, static_cast<std::size_t>(budget) / iterations,
+                            random.get(), state.get(), &estimate, &standard_error);
   return estimate;
 }
 
