@@ -134,6 +134,12 @@ std::string in_units(const result& of, double unit) {
   return text;
 }
 
+/// Without commas, for readers that know no quotes.
+std::string in_csv(std::string name) {
+  std::replace(name.begin(), name.end(), ',', ';');
+  return name;
+}
+
 template <int M>
 void table(const bench::problem<M>& on) {
   const double equal = on.variance(phimis::equal_fractions<double, M>());
@@ -155,7 +161,7 @@ void table(const bench::problem<M>& on) {
       const double oracle = oracle_of(on, budgets[i]);
       std::printf(" %s |", in_units(found[i], !vanishes ? oracle : equal > 0 ? equal : 1).c_str());
       if (csv && found[i].runs > 0) {
-        std::fprintf(csv, "%s,\"%s\",%lld,%lld,%.5g,%.5g,%.3g,%.4g\n", on.name, by.name.c_str(),
+        std::fprintf(csv, "%s,%s,%lld,%lld,%.5g,%.5g,%.3g,%.4g\n", on.name, in_csv(by.name).c_str(),
                      static_cast<long long>(budgets[i]), static_cast<long long>(found[i].runs), found[i].n_mse,
                      oracle > 0 ? found[i].n_mse / oracle : std::numeric_limits<double>::infinity(), found[i].bias_z,
                      found[i].seconds);

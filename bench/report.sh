@@ -65,6 +65,7 @@ $built/bench_solver --csv "$folder/solver.csv" $solver >"$folder/optimum.md"
 awk -F, '
   BEGIN { print "method,gamma,m,n,kkt,seconds,ratio_to_ours" }
   FNR == 1 { next }
+  $4 == "gradient" { next }
   $4 == "phimis" { ours[$1, $2, $3] = $5 }
   { printf "%s,%s,%s,%s,%s,%s,%.4g\n", $4, $1, $3, $2, $6, $5, $5 / ours[$1, $2, $3] }' \
   "$folder/solver.csv" >"$folder/optimum.csv"
