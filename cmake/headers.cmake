@@ -62,6 +62,7 @@ set(PHIMIS_UPPER_HEADERS
     phimis/estimator/control_coefficients.hpp
     phimis/estimator/control_fit.hpp
     phimis/estimator/control_variates.hpp
+    phimis/estimator/iteration_sizes.hpp
     phimis/estimator/optimal_mis.hpp
     phimis/estimator/run_estimate.hpp
     phimis/integrate.hpp

@@ -10,6 +10,7 @@
 #include <phimis/estimator/batch.hpp>
 #include <phimis/estimator/combination.hpp>
 #include <phimis/estimator/control_coefficients.hpp>
+#include <phimis/estimator/iteration_sizes.hpp>
 #include <phimis/estimator/run_estimate.hpp>
 #include <phimis/solver/rules.hpp>
 #include <phimis/technique/technique_set.hpp>
@@ -29,8 +30,11 @@ namespace phimis {
 
 /// How much to sample, and how.
 struct integrate_options {
-  std::int64_t budget = 500;  ///< samples in all, spread evenly over the iterations
+  std::int64_t budget = 500;  ///< samples in all
   int iterations = 5;
+  /// The samples of the last iteration over those of the first, in equal ratios between; 1 spreads them evenly. See
+  /// `iteration_sizes`.
+  double growth = 1;
   sampling_model model = sampling_model::multi_sample;
   phimis::rounding rounding = rounding::largest_remainder;  ///< of decided counts
   std::uint64_t seed = 1;  ///< of the default uniform numbers, std::mt19937_64; another for every run to be combined
@@ -161,6 +165,8 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
   require(options.budget >= options.iterations, "budget",
           "must be at least one sample for each of " + std::to_string(options.iterations) + " iterations",
           options.budget);
+  require(is_finite(options.growth) && options.growth > 0, "growth", "must be finite and greater than 0",
+          options.growth);
 
   auto default_rule = [] {
     if constexpr (M >= 2) {
@@ -212,10 +218,11 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
   estimator<value, M> every_sample;
   typename detail::run_of<value, M, combination_type>::type estimates(combination, options.model);
   integration<value, M, rule_type> result{.rule = rule};
+  const std::vector<std::int64_t> sizes =
+      iteration_sizes(options.budget, options.iterations, options.growth, M);
 
   for (int i = 0; i < options.iterations; ++i) {
-    const std::int64_t each = options.budget / options.iterations;
-    const std::int64_t samples = each + (i < options.budget % options.iterations ? 1 : 0);
+    const std::int64_t samples = sizes[static_cast<std::size_t>(i)];
     const fractions<double, M> alpha = result.rule.fractions();
     for (const double a : alpha) require(is_density(a) && a <= 1, "the rule's fractions", "must lie in [0, 1]", a);
     const auto drawn = draw_batch(f, techniques, alpha, {samples, options.model, options.rounding}, heuristic, next,

@@ -1,0 +1,60 @@
+# awk -f error_page.awk error.md: what a page shows of the tables that bench_error prints, a column for each problem.
+
+/^### / { problem = $2; problems[++count] = problem; next }
+/^\| method / || /^\|---/ { next }
+/^\| / {
+  split($0, cell, / *\| */)
+  name = cell[2]
+  if (!(name in seen)) { seen[name] = 1; methods[++lines] = name }
+  for (i = 1; i <= 8; ++i) value[name, problem, i] = cell[2 + i]
+}
+
+function number(text) { split(text, part, " "); return part[1] + 0 }
+function is_shown(name) { return name !~ /rule|progressive|one-sample|fixed_weights|default, (inverse|cross|pooled_)|joint, growth/ }
+
+function pivot(column, all,    i, p) {
+  printf "| method |"
+  for (p = 1; p <= count; ++p) printf " %s |", problems[p]
+  printf "\n|---|"
+  for (p = 1; p <= count; ++p) printf "---|"
+  print ""
+  for (i = 1; i <= lines; ++i) {
+    if (!all && !is_shown(methods[i])) continue
+    printf "| %s |", methods[i]
+    for (p = 1; p <= count; ++p) {
+      if ((methods[i], problems[p], column) in value) printf " %s |", value[methods[i], problems[p], column]
+      else printf " – |"
+    }
+    print ""
+  }
+}
+
+function verdict(column,    p, i, name, best, least, d, joint, cross, kondapaneni) {
+  print "| problem | default / oracle | at most 1.03 | best peer that adapts fractions | default below it | joint, cross-fitted | joint, pooled | Optimal MIS | joint, pooled below it |"
+  print "|---|---|---|---|---|---|---|---|---|"
+  for (p = 1; p <= count; ++p) {
+    best = ""
+    for (i = 1; i <= lines; ++i) {
+      name = methods[i]
+      if (name !~ /^(Adam|multichannel)/ || !((name, problems[p], column) in value)) continue
+      if (best == "" || number(value[name, problems[p], column]) < least) {
+        best = name
+        least = number(value[name, problems[p], column])
+      }
+    }
+    d = value["default", problems[p], column]
+    cross = value["joint, cross_fitted_control_variates", problems[p], column]
+    joint = value["joint, pooled_control_variates", problems[p], column]
+    kondapaneni = value["Optimal MIS, equal counts", problems[p], column]
+    # Where the least V[F] vanishes, units are others: no ratio to the oracle.
+    printf "| %s | %s | %s | %s: %s | %s | %s | %s | %s | %s |\n", problems[p], d, \
+      (problems[p] ~ /^(T2|V3|V4)$/ ? "the oracle is exact" : number(d) <= 1.03 ? "yes" : "no"), \
+      best, value[best, problems[p], column], (number(d) < least ? "yes" : "no"), cross, joint, kondapaneni, \
+      (number(joint) < number(kondapaneni) ? "yes" : "no")
+  }
+}
+
+END {
+  if (what == "verdict") verdict(2)
+  else pivot(what, all)
+}
