@@ -50,6 +50,7 @@ set(PHIMIS_CORE_HEADERS
 
 set(PHIMIS_UPPER_HEADERS
     phimis/analysis/allocation.hpp
+    phimis/analysis/confidence_interval.hpp
     phimis/analysis/joint_optimum.hpp
     phimis/analysis/optimum.hpp
     phimis/analysis/problem.hpp

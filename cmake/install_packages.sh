@@ -1,5 +1,5 @@
 #!/bin/sh
-# install_packages.sh tests|examples|bench
+# install_packages.sh tests|examples|bench|coverage
 #
 # Installs what is missing on Debian and Ubuntu, as root or with sudo; does nothing where nothing is missing. Elsewhere,
 # or where it may not install, it says what to install and fails.
@@ -14,11 +14,13 @@ examples="g++=g++ cmake=cmake ninja=ninja-build include/eigen3=libeigen3-dev inc
 tests="$examples clang++=clang clang-sanitizers=libclang-rt-dev include/catch2=catch2
        include/benchmark/benchmark.h=libbenchmark-dev include/rapidcheck.h=librapidcheck-dev"
 bench="$examples include/benchmark/benchmark.h=libbenchmark-dev include/gsl=libgsl-dev include/nlopt.h=libnlopt-dev"
+coverage="$tests gcovr=gcovr"
 case ${1-} in
   tests) wanted=$tests ;;
+  coverage) wanted=$coverage ;;
   bench) wanted=$bench ;;
   examples) wanted=$examples ;;
-  *) echo "usage: install_packages.sh tests|examples|bench" >&2; exit 2 ;;
+  *) echo "usage: install_packages.sh tests|examples|bench|coverage" >&2; exit 2 ;;
 esac
 
 is_there() {

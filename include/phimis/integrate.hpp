@@ -61,6 +61,7 @@ struct iteration {
   Value estimate;  ///< of this iteration alone
   Value standard_error;
   double effective_sample_size;
+  double degrees_of_freedom;  ///< of its standard error; see `estimator`
   Value combined_estimate;  ///< of all iterations so far
   Value combined_standard_error;
   rule_status status;  ///< of the rule's update after this iteration
@@ -72,6 +73,7 @@ struct integration {
   Value estimate = value_traits<Value>::zero();
   Value standard_error = value_traits<Value>::zero();
   double effective_sample_size = 0;  ///< of all samples as they were combined
+  double degrees_of_freedom = 0;     ///< of the standard error: for `analysis::confidence_interval`; 0 where it is unknown
   std::int64_t samples = 0;
   double cost = 0;             ///< Σ n_k c_k with the costs of the rule; 1 a sample where it has none
   double efficiency = 0;       ///< 1/(cost × variance), of a colour by its magnitude; 0 where the variance is unknown
@@ -240,6 +242,7 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
              .estimate = own.estimate(),
              .standard_error = own.standard_error(drawn.variance),
              .effective_sample_size = static_cast<double>(own.effective_sample_size()),
+             .degrees_of_freedom = static_cast<double>(own.degrees_of_freedom(drawn.variance)),
              .combined_estimate = value_traits<value>::zero(),
              .combined_standard_error = value_traits<value>::zero(),
              .status = result.rule.update()};
@@ -256,8 +259,12 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
     result.estimate = combined.estimate;
     result.standard_error = combined.standard_error;
     result.effective_sample_size = combined.effective_sample_size;
+    result.degrees_of_freedom = combined.degrees_of_freedom;
     result.control = estimates.control();
-    if (result.zero + result.nonfinite == result.samples) result.standard_error = value_traits<value>::unknown();
+    if (result.zero + result.nonfinite == result.samples) {
+      result.standard_error = value_traits<value>::unknown();
+      result.degrees_of_freedom = 0;
+    }
     result.trace.back().combined_estimate = result.estimate;
     result.trace.back().combined_standard_error = result.standard_error;
     if constexpr (std::is_void_v<decltype(callback(result.trace.back()))>) {

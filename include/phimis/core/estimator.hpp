@@ -59,8 +59,9 @@ enum class sampling_model {
 ///     F = Σ_j y_j / N
 ///     Var F = Σ_k n_k s_k² / N²   (multi-sample: spread within each technique)
 ///     Var ℱ = s² / N              (one-sample: spread of all samples)
+///     ν = (Σ_k V_k)² / Σ_k V_k²/(n_k − 1),   V_k = n_k s_k² / N²      (one-sample: N − 1)
 ///
-/// Source T Eqs. 1, 3, 8, 9, with sample variances in place of σ².
+/// Source T Eqs. 1, 3, 8, 9, with sample variances in place of σ²; ν of Satterthwaite 1946.
 /// - A technique with one sample has no spread of its own: its distance to the mean of the others is taken, whose
 ///   square is more on average.
 /// - Contributions are kept in units of a power of two near the first that is not 0, so that no scale of f overflows.
@@ -110,6 +111,25 @@ class estimator {
     return value_traits<Value>::root(variance_in_units(model)) * unit();
   }
 
+  /// ν: the variance is about as uncertain as that of ν + 1 normal numbers. 0 where it is unknown. A technique with one
+  /// sample has 1, as has its distance to the mean.
+  PHIMIS_HOST_DEVICE real degrees_of_freedom(sampling_model model) const {
+    const moments<Value> total = all();
+    if (total.count < 2) return 0;
+    if (model == sampling_model::one_sample) return static_cast<real>(total.count - 1);
+    const real sum = value_traits<Value>::magnitude(sum_of_spreads(total));
+    real own = 0;
+    real inverse = 0;  // Σ (V_k / ΣV)² / ν_k
+    for (int k = 0; k < M; ++k) {
+      if (by_technique_[k].count == 0) continue;
+      const real freedom = by_technique_[k].count > 1 ? static_cast<real>(by_technique_[k].count - 1) : real(1);
+      const real share = sum > 0 ? value_traits<Value>::magnitude(spread_of(k, total)) / sum : real(0);
+      own += freedom;
+      inverse += share * share / freedom;
+    }
+    return inverse > 0 ? 1 / inverse : own;
+  }
+
   /// Kish's effective sample size of the contributions.  (Σ|y|)² / Σ y², 0 where all are 0
   PHIMIS_HOST_DEVICE real effective_sample_size() const {
     if (!(magnitude_.mean > 0)) return 0;
@@ -131,16 +151,21 @@ class estimator {
     if (total.count < 2) return value_traits<Value>::unknown();
     const real n = static_cast<real>(total.count);
     if (model == sampling_model::one_sample) return total.variance() * (1 / n);
+    return sum_of_spreads(total) * (1 / (n * n));
+  }
+
+  /// n_k s_k², in units.
+  PHIMIS_HOST_DEVICE Value spread_of(int k, const moments<Value>& total) const {
+    const moments<Value>& own = by_technique_[k];
+    if (own.count != 1) return own.variance() * static_cast<real>(own.count);
+    const real n = static_cast<real>(total.count);
+    const Value apart = (own.mean - total.mean) * (n / (n - 1));
+    return apart * apart;
+  }
+  PHIMIS_HOST_DEVICE Value sum_of_spreads(const moments<Value>& total) const {
     Value sum = value_traits<Value>::zero();
-    for (int k = 0; k < M; ++k) {
-      const moments<Value>& own = by_technique_[k];
-      if (own.count > 1) sum = sum + own.variance() * static_cast<real>(own.count);
-      if (own.count == 1) {
-        const Value apart = (own.mean - total.mean) * (n / (n - 1));
-        sum = sum + apart * apart;
-      }
-    }
-    return sum * (1 / (n * n));
+    for (int k = 0; k < M; ++k) sum = sum + spread_of(k, total);
+    return sum;
   }
 
   /// A power of two within a factor of 2, whose inverse is a number too.

@@ -121,6 +121,15 @@ Value fitted_standard_error(const estimator<Value, M>& of, sampling_model model,
   return of.standard_error(model) * static_cast<real>(std::sqrt((n - 1) / (n - rank)));
 }
 
+/// Degrees of freedom of that standard error: of n − 1 the fit took rank − 1.
+template <class Value, int M>
+double fitted_degrees_of_freedom(const estimator<Value, M>& of, sampling_model model, int rank) {
+  const double n = static_cast<double>(of.samples());
+  const double own = static_cast<double>(of.degrees_of_freedom(model));
+  if (rank <= 1) return own;
+  return n > rank ? own * (n - rank) / (n - 1) : 0;
+}
+
 }  // namespace phimis
 
 #endif  // PHIMIS_ESTIMATOR_CONTROL_FIT_HPP

@@ -111,7 +111,8 @@ class pooled_controlled_estimate {
     estimator<Value, M> all;
     for (const auto& s : pool_.all()) add_controlled(all, s, control_, alpha);
     return {all.estimate(), fitted_standard_error(all, pool_.model(), control_.rank),
-            static_cast<double>(all.effective_sample_size())};
+            static_cast<double>(all.effective_sample_size()),
+            fitted_degrees_of_freedom(all, pool_.model(), control_.rank)};
   }
   const control_coefficients<Value, M>& control() const { return control_; }
 

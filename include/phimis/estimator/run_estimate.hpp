@@ -31,10 +31,15 @@ struct combined {
   Value estimate;
   Value standard_error;
   double effective_sample_size;
+  double degrees_of_freedom;
 };
 
 /// F = Σ w_b F_b / Σ w_b, Var F = Σ w_b² Var F_b / (Σ w_b)², over the iterations of a trace. An iteration of one sample
 /// has the given spread.
+///
+///     ν = (Σ_b V_b)² / Σ_b V_b²/ν_b,   V_b = w_b² Var F_b
+///
+/// Source Satterthwaite 1946.
 template <class Value, class Line, combination Combination>
 combined<Value> combine(const Combination& combination, const std::vector<Line>& trace, const Value& spread) {
   using traits = value_traits<Value>;
@@ -63,17 +68,27 @@ combined<Value> combine(const Combination& combination, const std::vector<Line>&
   Value variance = traits::zero();
   double reached = 0;
   double spent = 0;
+  double total = 0;    // Σ V_b
+  double squares = 0;  // Σ V_b²/ν_b
+  double own = 0;
   for (std::size_t b = 0; b < trace.size(); ++b) {
     const double share = weights[b] / sum;
     if (!(share > 0)) continue;
     estimate = estimate + trace[b].estimate * static_cast<real>(share);
     const Value part = errors[b] * (static_cast<real>(share) / unit);
     variance = variance + part * part;
+    const double size = static_cast<double>(traits::magnitude(part));
+    const double of_its_own = std::max(trace[b].degrees_of_freedom, 1.0);
+    total += size * size;
+    squares += size * size * size * size / of_its_own;
+    own += of_its_own;
     if (!(trace[b].effective_sample_size > 0)) continue;
     reached += share;
     spent += share * share / trace[b].effective_sample_size;
   }
-  return {estimate, traits::root(variance) * unit, spent > 0 ? reached * reached / spent : 0};
+  // An infinite variance is an unknown one.
+  const double freedom = !is_finite(squares) ? 0 : squares > 0 ? total * total / squares : own;
+  return {estimate, traits::root(variance) * unit, spent > 0 ? reached * reached / spent : 0, freedom};
 }
 
 /// The samples of a run, with the aggregate mixture of their batches.
@@ -154,7 +169,8 @@ class pooled_estimate {
       const int k = s.observed.technique;
       all.add(k, contribution(heuristic, k, s.value, alpha, s.observed.pdfs));
     }
-    return {all.estimate(), all.standard_error(pool_.model()), static_cast<double>(all.effective_sample_size())};
+    return {all.estimate(), all.standard_error(pool_.model()), static_cast<double>(all.effective_sample_size()),
+            static_cast<double>(all.degrees_of_freedom(pool_.model()))};
   }
   control_coefficients<Value, M> control() const { return {}; }
 

@@ -31,7 +31,7 @@ std::vector<sample> random_samples(int n, std::uint64_t seed) {
 }
 
 struct naive {
-  long double estimate = 0, one_sample = 0, multi_sample = 0, ess = 0;
+  long double estimate = 0, one_sample = 0, multi_sample = 0, ess = 0, freedom = 0;
 };
 
 /// The formulas of the papers, in long double and two passes.
@@ -47,6 +47,7 @@ naive naively(const std::vector<sample>& all) {
   result.estimate = sum / N;
   for (const sample& s : all) spread += (s.y - result.estimate) * (s.y - result.estimate);
   result.one_sample = spread / (N - 1) / N;
+  long double inverse = 0;
   for (int k = 0; k < M; ++k) {
     long double n = 0, mean = 0, own = 0;
     for (const sample& s : all) {
@@ -59,7 +60,9 @@ naive naively(const std::vector<sample>& all) {
     const long double others = (N * result.estimate - mean) / (N - 1);
     const long double variance = n > 1 ? own / (n - 1) : (mean - others) * (mean - others);
     result.multi_sample += n * variance / (N * N);
+    inverse += n * variance * n * variance / (n > 1 ? n - 1 : 1);
   }
+  result.freedom = result.multi_sample * N * N * result.multi_sample * N * N / inverse;
   result.ess = squares > 0 ? absolute * absolute / squares : 0;
   return result;
 }
@@ -73,6 +76,8 @@ void check(const phimis::estimator<double, M>& computed, const std::vector<sampl
   CHECK(agrees(computed.variance(sampling_model::multi_sample), wanted.multi_sample));
   CHECK(agrees(computed.standard_error(sampling_model::multi_sample), std::sqrt(wanted.multi_sample)));
   CHECK(agrees(computed.effective_sample_size(), wanted.ess));
+  CHECK(agrees(computed.degrees_of_freedom(sampling_model::multi_sample), wanted.freedom));
+  CHECK(computed.degrees_of_freedom(sampling_model::one_sample) == static_cast<double>(all.size() - 1));
 }
 
 }  // namespace
@@ -90,6 +95,24 @@ TEST_CASE("Estimate, both variances and effective sample size are those of the f
     CHECK(computed.zero() == zero);
     CHECK(computed.nonfinite() == 0);
   }
+}
+
+TEST_CASE("Degrees of freedom are those of the technique that has the variance") {
+  phimis::estimator<double, M> computed;
+  CHECK(computed.degrees_of_freedom(sampling_model::multi_sample) == 0);
+  for (int j = 0; j < 8; ++j) computed.add(0, 1);
+  CHECK(computed.degrees_of_freedom(sampling_model::multi_sample) == 7);
+  for (int j = 0; j < 5; ++j) computed.add(1, j);
+  CHECK(computed.degrees_of_freedom(sampling_model::multi_sample) == Approx(4));
+  CHECK(computed.degrees_of_freedom(sampling_model::one_sample) == 12);
+}
+
+TEMPLATE_TEST_CASE("Degrees of freedom do not overflow where contributions are far apart", "", float, double) {
+  phimis::estimator<TestType, 2> computed;
+  const TestType huge = std::sqrt(std::numeric_limits<TestType>::max()) / 100;
+  for (int j = 0; j < 4; ++j) computed.add(0, static_cast<TestType>(j));
+  for (int j = 0; j < 3; ++j) computed.add(1, huge * static_cast<TestType>(j));
+  CHECK(computed.degrees_of_freedom(sampling_model::multi_sample) == Approx(2));
 }
 
 TEST_CASE("A technique with one sample counts by its distance to the mean of the others") {
