@@ -42,7 +42,7 @@ END {
   print "  share 10 samples (L4, L5) and some have a single one, whose spread is overestimated: intervals are then too wide."
   print "- Intervals are for unbiased combinations. Those of `inverse_variance` are wrong, since the estimate is: with 10 samples an"
   print "  iteration they hold in half of the runs. `pooled` and `pooled_control_variates` claim the variance of samples that are"
-  print "  independent of their mixture: right with 100 samples an iteration, too little with 10, down to 85 % with four control"
+  print "  independent of their mixture: nearly right with 100 samples an iteration, too little with 10, down to 85 % with four control"
   print "  variates."
   print ""
   print "## Coverage"
