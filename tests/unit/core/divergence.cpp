@@ -58,6 +58,26 @@ TEST_CASE("The score is t phi' - phi up to a constant factor and term, and slope
   });
 }
 
+TEST_CASE("Where a kink is rounded off the score is that of the rounded phi") {
+  const auto check = [](const auto& d, long double t, long double width) {
+    const auto phi = [&](long double at) { return d.taylor(at, width).value; };
+    const long double h = 1e-5L * width;
+    const auto at = d.taylor(t, width);
+    const auto score = d.score_of(t, width);
+    CAPTURE(static_cast<double>(t), static_cast<double>(width));
+    CHECK(near(at.first, (phi(t + h) - phi(t - h)) / (2 * h), 1e-8L));
+    CHECK(near(at.second, (d.taylor(t + h, width).first - d.taylor(t - h, width).first) / (2 * h), 1e-7L));
+    CHECK(near(score.value, t * at.first - at.value, 1e-15L));
+    CHECK(near(score.slope, t * t * at.second, 1e-15L));
+  };
+  for (const long double width : {0.3L, 0.01L}) {
+    for (const long double t : {0.2L, 0.9L, 0.999L, 1.0L, 1.02L, 4.0L}) {
+      check(phimis::total_variation{}, t, width);
+      for (const double k : {1.0, 1.5, 3.0}) check(phimis::pearson_vajda{k}, t, width);
+    }
+  }
+}
+
 TEMPLATE_TEST_CASE("The score in working precision is the score in long double", "", float, double) {
   const long double tolerance = 100 * static_cast<long double>(std::numeric_limits<TestType>::epsilon());
   for_each_divergence([tolerance](const char* name, const auto& d) {

@@ -440,3 +440,21 @@ TEST_CASE("A prior of many samples holds four fractions at the start") {
   REQUIRE(rule.update() == rule_status::updated);
   for (int k = 0; k < M; ++k) CHECK(std::fabs(rule.fractions()[k] - given.start[k]) <= 1e-3);
 }
+
+TEST_CASE("A prior of many samples holds fractions at the start where few observations show pdfs far from normalised") {
+  options given;
+  given.start = {{0.4, 0.2, 0.1, 0.3}};
+  given.prior = 1e7;
+  const auto check = [&](const auto& divergence) {
+    for (const auto variate : {control_variate::on, control_variate::off}) {
+      minimiser<std::decay_t<decltype(divergence)>> rule(divergence, given, variate);
+      feed(rule, observe(interior, 4, 54));
+      rule.update();
+      for (int k = 0; k < M; ++k) CHECK(std::fabs(rule.fractions()[k] - given.start[k]) <= 1e-5);
+    }
+  };
+  check(phimis::kullback_leibler{});
+  check(phimis::chi_squared{});
+  check(phimis::reversed<phimis::kullback_leibler>{});
+  check(phimis::multi_sample_variance{});
+}

@@ -91,6 +91,27 @@ TEMPLATE_TEST_CASE("One update is the step of Eqs. 30-32, in both forms", "", fl
   CHECK(inside >= 12);  // of 16
 }
 
+TEMPLATE_TEST_CASE("Samples with f = 0 are observations of both forms", "", float, double) {
+  const auto with_zeros = [](double x) { return x < 0.3 ? 0.0 : f(x); };
+  const auto all = two_triangles::observe<TestType>(with_zeros, 0.4, 100, 5);
+  const long double tolerance = 200 * static_cast<long double>(std::numeric_limits<TestType>::epsilon());
+  for (const double gamma : {0.5, 1.0, 2.0}) {
+    for (const auto form : {newton_form::paper, newton_form::safeguarded}) {
+      auto rule = at<phimis::tsallis, TestType>(phimis::tsallis{gamma}, form, 0.4);
+      for (const auto& o : all) rule.observe(o);
+      CHECK(rule.counters().zero > 15);
+      const long double alpha = static_cast<long double>(rule.fractions()[0]);
+      REQUIRE(rule.update() == rule_status::updated);
+      const long double step = one_step(all, gamma, alpha, form == newton_form::safeguarded);
+      const bool left = step < 0 || step > 1;
+      const long double end = step < 0 ? 0 : 1;
+      const long double wanted = !left ? step : form == newton_form::paper ? end : (alpha + end) / 2;
+      CAPTURE(gamma, left);
+      CHECK(std::fabs(static_cast<long double>(rule.fractions()[0]) - wanted) <= tolerance);
+    }
+  }
+}
+
 TEMPLATE_TEST_CASE("Each update uses its own batch alone", "", float, double) {
   auto rule = at<phimis::kullback_leibler, TestType>({}, newton_form::safeguarded, 0.4);
   for (const auto& o : two_triangles::observe<TestType>(f, 0.4, 100, 1)) rule.observe(o);

@@ -151,6 +151,17 @@ TEST_CASE("A start where the objective is infinite moves inwards, and orders of 
   for (std::size_t k = 0; k < 4; ++k) CHECK(std::fabs(theta[k] / (b[k] / sum) - 1) <= 1e-9);
 }
 
+TEST_CASE("One multiplicative step solves what is a power of one coordinate each") {
+  // With G_k = b_k/θ_k and β = 1 the step is θ_k ← b_k/Σb.
+  const double b[4] = {0.5, 0.2, 0.1, 0.2};
+  barrier on{b, 4};
+  std::vector<double> theta{0.1, 0.2, 0.3, 0.4};
+  const auto found = solve(on, theta);
+  CHECK(found.residual <= 1e-14);
+  CHECK(found.evaluations == 2);
+  for (std::size_t k = 0; k < 4; ++k) CHECK(std::fabs(theta[k] - b[k]) <= 1e-15);
+}
+
 TEST_CASE("Of an objective that is not convex the minimum downhill of the start is found") {
   double_well on;
   for (const double start : {0.1, 0.3, 0.7, 0.95}) {

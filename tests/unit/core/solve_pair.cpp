@@ -83,6 +83,19 @@ TEST_CASE("A root near either end is precise in the small fraction") {
   }
 }
 
+TEST_CASE("A root whose products with its bracket are no numbers is found by halving alone") {
+  for (const double small : {1e-180, 1e-250, 1e-290}) {
+    for (const powers f : {powers{1, 1 / small}, powers{1, small}}) {
+      for (const pair_fractions start : {zero, one, pair_fractions{0.5, 0.5}}) {
+        INFO("c " << f.c << ", start " << start.first);
+        const auto found = phimis::solve_pair(f, zero, one, start, epsilon);
+        CHECK(std::fabs(found.alpha.first / f.root().first - 1) <= 20 * epsilon);
+        CHECK(std::fabs(found.alpha.second / f.root().second - 1) <= 20 * epsilon);
+      }
+    }
+  }
+}
+
 TEST_CASE("An end is the answer where the condition points out of it") {
   const auto up = [](const pair_fractions& alpha) { return pair_sums{2 - alpha.first, 1, 3}; };
   const auto down = [](const pair_fractions& alpha) { return pair_sums{-1 - alpha.first, 1, 3}; };

@@ -85,6 +85,36 @@ TEMPLATE_TEST_CASE("Updates on the same observations, with nothing retained, wal
   }
 }
 
+TEMPLATE_TEST_CASE("Older sums are retained with their weight", "", float, double) {
+  const auto before = three_powers::observe<TestType>(falling, {{20, 40, 30}}, 3);
+  const auto after = three_powers::observe<TestType>(wave, {{30, 30, 30}}, 4);
+  phimis::rule_options<TestType, 3> options;
+  options.prior = 5;
+  const auto check = [&](const auto& divergence, TestType retention) {
+    using rule_type = phimis::streaming_newton<std::decay_t<decltype(divergence)>, TestType, 3>;
+    rule_type retaining(divergence, options, retention);
+    for (const auto& o : before) retaining.observe(o);
+    retaining.update();
+    // The same by hand: all is forgotten, and pooled again.
+    rule_type forgetting(divergence, options, 0);
+    for (const auto& o : before) forgetting.observe(o);
+    const auto older = forgetting.state();
+    forgetting.update();
+    CHECK(distance(retaining.fractions(), forgetting.fractions()) == 0);
+    for (const auto& o : after) retaining.observe(o);
+    for (const auto& o : after) forgetting.observe(o);
+    forgetting.pool(older, retention);
+    retaining.update();
+    forgetting.update();
+    CHECK(distance(retaining.fractions(), forgetting.fractions()) <= 100 * rounding<TestType>);
+  };
+  for (const TestType retention : {TestType(0.25), TestType(0.9)}) {
+    check(tsallis{0.5}, retention);
+    check(tsallis{2}, retention);
+    check(phimis::multi_sample_variance{}, retention);
+  }
+}
+
 TEMPLATE_TEST_CASE("Updates for V[F] walk to the fractions where it is least", "", float, double) {
   using exact = phimis::exact_minimiser<phimis::multi_sample_variance, phimis::fixed_table<TestType, 3, 96>>;
   const auto rough = [](double x) { return in_the_span(x) * (1.2 + 0.8 * std::sin(4 * x)); };
