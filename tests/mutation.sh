@@ -5,7 +5,7 @@ set -u
 
 usage="usage: tests/mutation.sh [--list] [--jobs N] [FILTER]
 
-  FILTER     only mutants whose identifier, header or tests contain this
+  FILTER     only mutants whose identifier, header and tests match this regular expression
   --list     changes and runs nothing: lists mutants with their header and tests
   --jobs N   so many at a time; one for each core by default
   --help     this
@@ -33,12 +33,12 @@ cd "$(dirname "$0")/.." || exit 1
 mutants=tests/mutants.txt
 # A line for each: identifier, header, tests.
 lines=$(awk -v filter="$filter" '
-  /^[a-z]/ && (filter == "" || index($0, filter)) {
+  /^[a-z]/ && (filter == "" || $0 ~ filter) {
     if (NF < 3) { print "tests/mutants.txt:" NR ": an identifier, a header and its tests are needed" >"/dev/stderr"; exit 1 }
     if (seen[$1]++) { print "tests/mutants.txt:" NR ": " $1 " is there twice" >"/dev/stderr"; exit 1 }
     print
   }' "$mutants") || exit 1
-[ -n "$lines" ] || { echo "tests/mutation.sh: no mutant has '$filter'" >&2; exit 1; }
+[ -n "$lines" ] || { echo "tests/mutation.sh: no mutant matches '$filter'" >&2; exit 1; }
 if [ -n "$list" ]; then
   echo "$lines"
   exit 0

@@ -272,6 +272,20 @@ TEST_CASE("A run of zeros says that it has seen nothing") {
   CHECK(phimis::integrate(all_nan, two).status == phimis::integration_status::all_zero);
 }
 
+TEST_CASE("Techniques without a fraction need no sample: counts are decided where those with one have theirs") {
+  auto next = source(3);
+  const auto draw = [&](std::int64_t samples) {
+    return phimis::draw_batch(f, three, phimis::fractions<double, 3>{{0.5, 0.5, 0}}, {.samples = samples},
+                              phimis::balance{}, next, [](const auto&) {});
+  };
+  const auto two_samples = draw(2);
+  CHECK(two_samples.variance == sampling_model::multi_sample);
+  CHECK(two_samples.counts[0] == 1);
+  CHECK(two_samples.counts[1] == 1);
+  CHECK(two_samples.counts[2] == 0);
+  CHECK(draw(1).variance == sampling_model::one_sample);
+}
+
 TEST_CASE("An integrand that changes sign is learnt by its magnitude and estimated with its sign") {
   const auto plus = phimis::integrate(f, two);
   const auto minus = phimis::integrate([](double x) { return -f(x); }, two);

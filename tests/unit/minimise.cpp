@@ -4,7 +4,9 @@
 #include "random_problems.hpp"
 #include "refuses.hpp"
 
+#include <phimis/core/exact_minimiser.hpp>
 #include <phimis/solver/minimise.hpp>
+#include <phimis/solver/table.hpp>
 
 #include <Eigen/Core>
 
@@ -218,6 +220,23 @@ TEST_CASE("The unit of the measure changes no fraction, from 1e-150 to 1e150") {
     const minimum found = minimise(phimis::kullback_leibler{}, three.f * unit, three.pdfs * unit, three.q * unit);
     CHECK(largest_difference(found.fractions, free) <= 1e-12);
   }
+}
+
+TEST_CASE("Variances see the sign of f as the exact rule does") {
+  VectorXd with_signs = three.f;
+  for (Eigen::Index j = 0; j < with_signs.size(); j += 3) with_signs[j] *= -1;
+  phimis::exact_minimiser<phimis::multi_sample_variance, phimis::table<double, 3>> rule(
+      phimis::multi_sample_variance{}, phimis::without_floors<double, 3>());
+  for (Eigen::Index j = 0; j < with_signs.size(); ++j) {
+    rule.observe({with_signs[j], {{three.pdfs(j, 0), three.pdfs(j, 1), three.pdfs(j, 2)}}, three.q[j], 0});
+  }
+  REQUIRE(rule.update() == rule_status::local);
+  const VectorXd learnt{{rule.fractions()[0], rule.fractions()[1], rule.fractions()[2]}};
+  const minimum found = minimise(phimis::multi_sample_variance{}, with_signs, three.pdfs, three.q);
+  CHECK(found.status == rule_status::local);
+  CHECK(largest_difference(found.fractions, learnt) <= 1e-9);
+  const minimum of_magnitude = minimise(phimis::multi_sample_variance{}, three.f, three.pdfs, three.q);
+  CHECK(largest_difference(of_magnitude.fractions, learnt) > 1e-3);
 }
 
 TEST_CASE("The sign of f changes no fraction") {

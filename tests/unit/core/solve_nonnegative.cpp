@@ -81,6 +81,15 @@ TEST_CASE("A fit without negative unknowns is that without constraints") {
   CHECK(x[1] == Approx(2).epsilon(1e-15));
 }
 
+TEST_CASE("An unknown that only another one asks for grows") {
+  const double g[2][2] = {{2, -1.5}, {-1.5, 2}};
+  const double b[2] = {4, -1};
+  double x[2];
+  REQUIRE(solve_nonnegative<2>(g, b, 2, x));
+  CHECK(x[0] == Approx(6.5 / 1.75).epsilon(1e-15));
+  CHECK(x[1] == Approx(4 / 1.75).epsilon(1e-15));
+}
+
 TEST_CASE("No unknown grows where every right side is negative") {
   const double g[2][2] = {{2, 1}, {1, 3}};
   const double b[2] = {-4, -7};
