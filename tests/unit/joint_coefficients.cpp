@@ -1,15 +1,29 @@
 // SPDX-License-Identifier: MIT
-// joint_minimiser.hpp: the coefficients at the learnt fractions, by their own equations.
+// joint_minimiser.hpp, joint_optimum.hpp: the coefficients at the learnt fractions, by their own equations; in reach of these
+// fractions only.
 #include "catch.hpp"
 #include "two_triangles.hpp"
 
+#include <phimis/analysis/joint_optimum.hpp>
 #include <phimis/solver/joint_minimiser.hpp>
+#include <phimis/technique/technique_set.hpp>
 
 #include <cmath>
+#include <limits>
 
 namespace {
 
 double waves(double x) { return std::sin(9 * x) + 0.4 * x; }  // of either sign
+
+/// Even on a part of [0, 1].
+struct part {
+  double lower, upper;
+  double pdf(double x) const { return x < lower || x >= upper ? 0 : 1 / (upper - lower); }
+  template <phimis::uniform_source Next>
+  double sample(Next&& next) const {
+    return lower + (upper - lower) * next();
+  }
+};
 
 }  // namespace
 
@@ -35,4 +49,17 @@ TEST_CASE("Coefficients solve the normal equations at the learnt fractions, of a
     }
     for (int k = 0; k < 2; ++k) CHECK(std::fabs(rest[k]) <= 1e-12L * size[k]);
   }
+}
+
+TEST_CASE(
+    "Without the technique that alone reaches a part of f the controlled variance is infinite, of f = 0 it is not") {
+  const phimis::technique_set techniques(part{0, 0.5}, part{0.5, 1});
+  const phimis::fractions<double, 2> first_alone{{1, 0}};
+  const auto variance_of = [&](double (*f)(double)) {
+    const phimis::analysis::problem<2> on(f, techniques, phimis::interval(0, 1), {0.5});
+    return phimis::analysis::best_control_variates(on, first_alone).variance.value;
+  };
+  CHECK(variance_of([](double x) { return 1 + x; }) == std::numeric_limits<double>::infinity());
+  // 1 + x on [0, ½] with p = 2, less what a constant explains: ∫ (x − ¼)²/2 dx.
+  CHECK(variance_of([](double x) { return x < 0.5 ? 1 + x : 0; }) == Approx(1.0 / 192));
 }

@@ -172,6 +172,15 @@ TEST_CASE("Without samples, or with zeros alone, nothing is NaN") {
   CHECK(computed.zero() == 3);
 }
 
+TEMPLATE_TEST_CASE("The variance of a colour is unknown in every component with fewer than two samples", "", float, double) {
+  phimis::estimator<colour<TestType>, 2> computed;
+  for (int samples = 0; samples < 2; ++samples) {
+    const auto error = computed.standard_error(sampling_model::multi_sample);
+    for (int i = 0; i < 3; ++i) CHECK(error[i] == std::numeric_limits<TestType>::infinity());
+    computed.add(0, colour<TestType>{{1, 2, 3}});
+  }
+}
+
 TEMPLATE_TEST_CASE("Equal contributions have no variance and count in full", "", float, double) {
   phimis::estimator<TestType, 2> computed;
   for (int i = 0; i < 10; ++i) computed.add(i % 2, TestType(0.75));

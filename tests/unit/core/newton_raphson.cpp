@@ -338,3 +338,31 @@ TEMPLATE_TEST_CASE("A floor that one minus the other's rounds away holds all the
     CHECK(rule.fractions()[1] == 1);
   }
 }
+
+TEMPLATE_TEST_CASE("From an end, infinitely far from its prior, a step goes back to the start", "", float, double) {
+  auto options = phimis::without_floors<TestType, 2>();
+  options.prior = 1;
+  for (const TestType first : {TestType(0), TestType(1)}) {
+    newton_raphson<phimis::chi_squared, TestType> rule({}, newton_form::paper, options);
+    auto state = rule.state();
+    state.fractions = {{first, 1 - first}};
+    rule.resume(state);
+    for (const auto& o : two_triangles::observe<TestType>(f, 0.5, 20, 3)) rule.observe(o);
+    CHECK(rule.update() == rule_status::updated);
+    CHECK(rule.fractions()[0] == TestType(0.5));
+  }
+}
+
+TEMPLATE_TEST_CASE("A step that is no number moves nothing and is counted", "", float, double) {
+  auto options = phimis::without_floors<TestType, 2>();
+  options.prior = 1;
+  newton_raphson<phimis::chi_squared, TestType> rule({}, newton_form::safeguarded, options);
+  auto state = rule.state();
+  const TestType tiny = 2 * std::numeric_limits<TestType>::min();  // squared against it, the prior overflows
+  state.fractions = {{tiny, 1}};
+  rule.resume(state);
+  for (const auto& o : two_triangles::observe<TestType>(f, 0.5, 20, 3)) rule.observe(o);
+  CHECK(rule.update() == rule_status::not_converged);
+  CHECK(rule.fractions()[0] == tiny);
+  CHECK(rule.counters().left == 1);
+}

@@ -266,3 +266,10 @@ TEMPLATE_TEST_CASE("A floor holds beside frozen techniques that have all but rou
   CHECK(alpha[1] == TestType(0.75));
   CHECK(alpha[2] == least);
 }
+
+TEMPLATE_TEST_CASE("A rule that learns nothing has equal fractions unless told otherwise", "", float, double) {
+  phimis::fixed_fractions<TestType, 4> rule;
+  rule.observe({1, {{1, 2, 3, 4}}, 1, 0});
+  CHECK(rule.update() == rule_status::start);
+  for (int k = 0; k < 4; ++k) CHECK(rule.fractions()[k] == TestType(0.25));
+}
