@@ -15,7 +15,7 @@ unset mxtics
 unset key
 set xrange [2e-6:1]
 problems = 'T1 T2 T3 L4 L5 V1 V2 V3 V4 2-D 5-D'
-array names[8] = ["oracle fractions", "default", "default; growth 16; square_root", "joint; cross_fitted_control_variates", "equal counts", "Optimal MIS; equal counts", "multichannel β = .25", "VEGAS (GSL)"]
+array names[8] = ["oracle fractions", "default", "default; even iterations by_count", "joint; cross_fitted_control_variates", "equal counts", "Optimal MIS; equal counts", "multichannel β = .25", "VEGAS (GSL)"]
 array colours[8] = ["#000000", "#0072B2", "#56B4E9", "#009E73", "#999999", "#D55E00", "#E69F00", "#CC79A7"]
 array shapes[8] = [2, 7, 9, 5, 4, 6, 8, 10]
 # Below 1e-9 an estimate is exact to rounding, and has no place on the axis.

@@ -99,9 +99,9 @@ template <int M>
 std::vector<method<M>> methods() {
   using namespace phimis;
   const integrate_options decided;
-  const integrate_options growing{.growth = 16};
-  const integrate_options one_sample{.model = sampling_model::one_sample};
-  const auto learnt = exact_rule<M>(chi_squared{}, {.prior = 1});
+  const integrate_options even{.growth = 1};
+  const integrate_options one_sample{.growth = 1,
+                                     .model = sampling_model::one_sample};  // of peers, as they were published
   std::vector<method<M>> all;
   const auto add = [&](const char* name, kind of, const auto&... policies) {
     all.push_back(by_integrate<M>(name, of, decided, policies...));
@@ -111,10 +111,9 @@ std::vector<method<M>> methods() {
                    return at_fractions(on, on.best, budget, seed);
                  }});
   add("default", kind::chosen);
-  add("default, square_root", kind::chosen, square_root{});
+  all.push_back(by_integrate<M>("default, even iterations by_count", kind::chosen, even, by_count{}));
   add("default, pooled", kind::chosen, pooled{});
-  all.push_back(by_integrate<M>("default, growth 16", kind::chosen, growing));
-  all.push_back(by_integrate<M>("default, growth 16, square_root", kind::chosen, growing, square_root{}));
+  add("default, cross_fitted_control_variates", kind::chosen, cross_fitted_control_variates{});
   add("joint, cross_fitted_control_variates", kind::chosen, joint_rule<M>(), cross_fitted_control_variates{});
   add("joint, pooled_control_variates", kind::chosen, joint_rule<M>(), pooled_control_variates{});
 
@@ -134,16 +133,16 @@ std::vector<method<M>> methods() {
     const std::string name = beta < 0.5 ? "multichannel β = .25" : "multichannel β = .5";
     const peers::multichannel<M> rule(beta);
     all.push_back(by_integrate<M>(name, kind::peer, one_sample, rule, inverse_variance{}));
-    all.push_back(by_integrate<M>(name + ", by_count", kind::peer, one_sample, rule));
+    all.push_back(by_integrate<M>(name + ", by_count", kind::peer, one_sample, rule, by_count{}));
   }
 #ifdef PHIMIS_BENCH_GSL
   all.push_back({"VEGAS (GSL)", kind::peer, peers::vegas<problem<M>>});
 #endif
 
-  add("default, fixed_weights .15, .8, 1", kind::other, fixed_weights({.15, .8, 1}));
+  add("default, by_count", kind::other, by_count{});
+  add("default, fixed_weights .5, 1", kind::other, fixed_weights({.5, 1}));
   add("default, inverse_variance", kind::other, inverse_variance{});
   add("default, progressive_control_variates", kind::other, progressive_control_variates{});
-  add("default, cross_fitted_control_variates", kind::other, cross_fitted_control_variates{});
   add("default, pooled_control_variates", kind::other, pooled_control_variates{});
   add("joint, progressive_control_variates", kind::other, joint_rule<M>(), progressive_control_variates{});
   if constexpr (M == 2) {
@@ -157,12 +156,11 @@ std::vector<method<M>> methods() {
   add("second_order_rule", kind::other, second_order_rule<M>());
   add("inverse_variance_rule", kind::other, inverse_variance_rule<M>());
   add("sigma_rule, count_independent weights", kind::other, sigma_rule<M>(), count_independent<balance>{});
-  all.push_back(by_integrate<M>("joint, growth 16, cross_fitted_control_variates", kind::other, growing,
-                                joint_rule<M>(), cross_fitted_control_variates{}));
   add("exact_rule, γ = ½", kind::other, exact_rule<M>(tsallis{0.5}));
   add("exact_rule, Kullback–Leibler", kind::other, exact_rule<M>(kullback_leibler{}));
   add("exact_rule, V[F]", kind::other, exact_rule<M>(multi_sample_variance{}));
-  all.push_back(by_integrate<M>("default in one-sample sampling", kind::other, one_sample, learnt));
+  all.push_back(
+      by_integrate<M>("default in one-sample sampling", kind::other, {.model = sampling_model::one_sample}));
   return all;
 }
 

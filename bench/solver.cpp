@@ -147,6 +147,7 @@ double residual_of(objective& on, Eigen::VectorXd alpha) {
 outcome ours(const problem& on, int gamma) {
   phimis::minimise_options options;
   options.variate = phimis::control_variate::off;
+  options.tolerance = enough;
   const auto start = clock_type::now();
   const phimis::minimum found = gamma == 1
                                     ? phimis::minimise(phimis::kullback_leibler{}, on.f, on.pdfs, on.q, options)

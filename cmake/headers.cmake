@@ -16,8 +16,10 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/limits.hpp
     phimis/core/linear_equations.hpp
     phimis/core/linear_heuristic.hpp
+    phimis/core/minimisation.hpp
     phimis/core/minimise_pair.hpp
     phimis/core/minimise_rows.hpp
+    phimis/core/mixture_scores.hpp
     phimis/core/mixture_sums.hpp
     phimis/core/moments.hpp
     phimis/core/movable_techniques.hpp
@@ -29,6 +31,7 @@ set(PHIMIS_CORE_HEADERS
     phimis/core/power_terms.hpp
     phimis/core/projection_sums.hpp
     phimis/core/quadratic_on_simplex.hpp
+    phimis/core/row_parts.hpp
     phimis/core/rule.hpp
     phimis/core/second_order.hpp
     phimis/core/sigma_proportional.hpp
@@ -74,6 +77,7 @@ set(PHIMIS_UPPER_HEADERS
     phimis/solver/joint_problem.hpp
     phimis/solver/least_squares.hpp
     phimis/solver/minimise.hpp
+    phimis/solver/row_matrix.hpp
     phimis/solver/rules.hpp
     phimis/solver/table.hpp
     phimis/technique/density.hpp

@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   line("equal, cross_fitted_control_variates", true, {66.9, .0155, .0622}, equal, cross_fitted_control_variates{});
   line("exact χ² optimum", true, {52.1, .0211, .0909}, best);
   line("χ²", true, {56.7, .0431, .137}, learnt);
-  line("χ², square_root", true, {57.3, .0431, .137}, learnt, square_root{});
+  line("χ², by_count", true, {57.3, .0431, .137}, learnt, by_count{});
   line("χ², pooled", false, {53.8, .0236, .1013}, learnt, pooled{});
   line("χ², pooled_control_variates", false, {53.6, .0193, .08}, learnt, pooled_control_variates{});
   line("joint, progressive_control_variates", true, {75.7, .1272, .2866}, joint, progressive_control_variates{});

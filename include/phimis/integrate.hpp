@@ -32,9 +32,9 @@ namespace phimis {
 struct integrate_options {
   std::int64_t budget = 500;  ///< samples in all
   int iterations = 5;
-  /// The samples of the last iteration over those of the first, in equal ratios between; 1 spreads them evenly. See
-  /// `iteration_sizes`.
-  double growth = 1;
+  /// The samples of the last iteration over those of the first, in equal ratios between: few are drawn before anything is
+  /// learnt. 1 spreads them evenly. See `iteration_sizes`.
+  double growth = 16;
   sampling_model model = sampling_model::multi_sample;
   phimis::rounding rounding = rounding::largest_remainder;  ///< of decided counts
   std::uint64_t seed = 1;  ///< of the default uniform numbers, std::mt19937_64; another for every run to be combined
@@ -142,7 +142,7 @@ auto& pick(Default& otherwise, First& first, Rest&... rest) {
 ///
 ///     rule              exact_rule<M>(chi_squared{}, {.prior = 1})
 ///     weight heuristic  balance{}
-///     combination       by_count{}
+///     combination       square_root{}; by_count{} where the fractions are fixed
 ///     uniform numbers   std::mt19937_64 of options.seed; any callable that returns the next one, taken by reference
 ///     callback          none; called after each iteration, may return progress::stop
 ///
@@ -179,10 +179,14 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
   }();
   auto default_source = [engine = std::mt19937_64(options.seed)]() mutable { return uniform(engine()); };
   const balance default_heuristic;
-  const by_count default_combination;
   const auto default_callback = [](const line&) {};
 
   auto rule = detail::pick<detail::rule_kind>(default_rule, policies...);
+  using rule_type = decltype(rule);
+  // Where nothing is learnt no iteration is better than another.
+  using default_combination_type =
+      std::conditional_t<std::is_same_v<rule_type, fixed_fractions<double, M>>, by_count, square_root>;
+  const default_combination_type default_combination;
   const auto& heuristic = detail::pick<detail::heuristic_kind>(default_heuristic, policies...);
   const auto& combination = detail::pick<detail::combination_kind>(default_combination, policies...);
   auto& next = detail::pick<detail::source_kind>(default_source, policies...);
@@ -200,7 +204,6 @@ auto integrate(const Integrand& f, const technique_set<Techniques...>& technique
                     detail::how_many<detail::source_kind, Policies...> <= 1 &&
                     detail::how_many<detail::callback_kind<line>, Policies...> <= 1,
                 "integrate() takes at most one policy of each kind");
-  using rule_type = decltype(rule);
   static_assert(rule_type::techniques == M, "the rule must be for as many techniques as there are");
   static_assert(std::is_same_v<typename rule_type::real, double>,
                 "integrate() observes in double: the rule must, too");

@@ -209,9 +209,9 @@ TEMPLATE_TEST_CASE("Where the pdfs span f the first split iteration, and all sam
 
 TEST_CASE(
     "The first iteration of the progressive form is plain, later ones have the coefficients of what came before") {
-  const auto result = phimis::integrate(in_span, triangles, {.budget = 60, .iterations = 3}, phimis::fixed_rule<2>(),
+  const auto result = phimis::integrate(in_span, triangles, {.budget = 60, .iterations = 3, .growth = 1}, phimis::fixed_rule<2>(),
                                         progressive_control_variates{});
-  const auto plain = phimis::integrate(in_span, triangles, {.budget = 60, .iterations = 3}, phimis::fixed_rule<2>());
+  const auto plain = phimis::integrate(in_span, triangles, {.budget = 60, .iterations = 3, .growth = 1}, phimis::fixed_rule<2>());
   CHECK(result.trace[0].estimate == Approx(plain.trace[0].estimate).epsilon(1e-14));
   CHECK(result.trace[0].standard_error == Approx(plain.trace[0].standard_error).epsilon(1e-12));
   CHECK(result.trace[1].estimate == Approx(2.5).epsilon(1e-13));
@@ -271,7 +271,7 @@ TEST_CASE("With too few samples control variates are off, and the estimate is wh
   const auto plain = phimis::integrate(bent, triangles, options, fixed);
   const auto in_pool = phimis::integrate(bent, triangles, options, fixed, pooled{});
   for (const double estimate :
-       {phimis::integrate(bent, triangles, options, fixed, progressive_control_variates{}).estimate,
+       {phimis::integrate(bent, triangles, options, fixed, progressive_control_variates{phimis::by_count{}}).estimate,
         phimis::integrate(bent, triangles, options, fixed, pooled_control_variates{}).estimate}) {
     CHECK(estimate == Approx(plain.estimate).epsilon(1e-14));
   }
@@ -306,7 +306,7 @@ TEMPLATE_TEST_CASE("A technique that is given up leaves the estimate right, with
 TEST_CASE("Duplicate techniques change nothing but how coefficients are shared") {
   const phimis::technique_set doubled(falling{}, rising{}, rising{});
   const phimis::rule_options<double, 3> as_two{.start = {{0.5, 0.25, 0.25}}, .floors = {{0, 0, 0}}};
-  const phimis::integrate_options options{.budget = 400, .iterations = 2, .seed = 3};
+  const phimis::integrate_options options{.budget = 400, .iterations = 2, .growth = 1, .seed = 3};
   const auto three = phimis::integrate(bent, doubled, options, phimis::fixed_rule(as_two), pooled_control_variates{});
   const auto two = phimis::integrate(bent, triangles, options, phimis::fixed_rule<2>(), pooled_control_variates{});
   CHECK(three.control.rank == 2);

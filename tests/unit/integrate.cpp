@@ -81,12 +81,22 @@ TEST_CASE("The defaults integrate, and know how well") {
   for (const double a : run.fractions) CHECK(a >= 0.01);
 }
 
+TEST_CASE("By default iterations grow and later ones count more, where something is learnt") {
+  const auto run = phimis::integrate(f, two);
+  const auto rule = phimis::exact_rule<2>(phimis::chi_squared{}, {.prior = 1});
+  CHECK(digest(run) == digest(phimis::integrate(f, two, {.growth = 16}, rule, phimis::square_root{})));
+  CHECK(run.trace.front().samples == 18);
+  CHECK(run.trace.back().samples == 254);
+  const auto fixed = phimis::fixed_rule<2>();
+  CHECK(digest(phimis::integrate(f, two, fixed)) == digest(phimis::integrate(f, two, fixed, phimis::by_count{})));
+}
+
 TEST_CASE("Two iterations are two batches, two updates and one mean") {
   // The same by hand, from the same uniform numbers.
-  const integrate_options options{.budget = 61, .iterations = 2};
+  const integrate_options options{.budget = 61, .iterations = 2, .growth = 1};
   auto rule = phimis::newton_rule(phimis::kullback_leibler{});
   auto next = source(1);
-  const auto run = phimis::integrate(f, two, options, rule, next);
+  const auto run = phimis::integrate(f, two, options, rule, next, phimis::by_count{});
 
   random_numbers random(1);
   double alpha = 0.5, sum = 0, total = 0;
@@ -118,7 +128,7 @@ TEST_CASE("Policies follow in any order") {
   const integrate_options options{.budget = 200, .iterations = 4};
   const auto rule = phimis::exact_rule(phimis::hellinger{});
   const phimis::power weights{1.5};
-  const phimis::square_root combination;
+  const phimis::inverse_variance combination;
   int calls = 0;
   const auto callback = [&calls](const auto& line) { calls += line.index + 1; };
   auto a = source(2), b = source(2), c = source(2), d = source(2);
@@ -126,7 +136,7 @@ TEST_CASE("Policies follow in any order") {
   CHECK(digest(phimis::integrate(f, two, options, callback, b, combination, weights, rule)) == wanted);
   CHECK(digest(phimis::integrate(f, two, options, combination, rule, c, callback, weights)) == wanted);
   // Temporaries and moved values as well.
-  CHECK(digest(phimis::integrate(f, two, options, phimis::square_root{}, phimis::power{1.5},
+  CHECK(digest(phimis::integrate(f, two, options, phimis::inverse_variance{}, phimis::power{1.5},
                                  phimis::exact_rule(phimis::hellinger{}), d)) == wanted);
   CHECK(calls == 3 * (1 + 2 + 3 + 4));
   // Each policy matters.
@@ -171,7 +181,7 @@ TEST_CASE("A callback sees every iteration and may stop the run") {
       return line.index == last ? phimis::progress::stop : phimis::progress::go_on;
     };
   };
-  const integrate_options options{.budget = 50, .iterations = 5};
+  const integrate_options options{.budget = 50, .iterations = 5, .growth = 1};
   const auto stopped = phimis::integrate(f, two, options, stop_at(1));
   CHECK(stopped.status == phimis::integration_status::stopped);
   CHECK(stopped.samples == 20);
@@ -186,7 +196,8 @@ TEST_CASE("A callback sees every iteration and may stop the run") {
 TEST_CASE("The trace adds up, also where the budget does not divide") {
   const auto g = [](double x) { return x < 0.3 ? 0 : x > 0.95 ? std::numeric_limits<double>::quiet_NaN() : f(x); };
   for (const auto model : {sampling_model::multi_sample, sampling_model::one_sample}) {
-    const auto run = phimis::integrate(g, three, {.budget = 503, .iterations = 7, .model = model});
+    const auto run = phimis::integrate(g, three, {.budget = 503, .iterations = 7, .growth = 1, .model = model},
+                                       phimis::by_count{});
     REQUIRE(run.trace.size() == 7);
     std::int64_t samples = 0, zero = 0, nonfinite = 0;
     double spent = 0, weighted = 0, variance = 0;
@@ -377,7 +388,7 @@ verdict repeat(const Techniques& techniques, integrate_options options, int runs
 
 TEST_CASE("Estimates are unbiased however counts are made, and standard errors honest") {
   // |z| < 5: false alarm 6e-7 each. The variance of 4000 estimates is known to √(2/4000) = 2.2 %: 5 of them.
-  const integrate_options plain{.budget = 24, .iterations = 2, .seed = 1};
+  const integrate_options plain{.budget = 24, .iterations = 2, .growth = 1, .seed = 1};
   auto one_sample = plain;
   one_sample.model = sampling_model::one_sample;
   auto systematic = plain;
@@ -468,10 +479,10 @@ TEST_CASE("A batch draws each technique as often as it counts and hands over eve
 }
 
 TEST_CASE("Cost counts every sample at its price, efficiency is 1/(cost × variance)") {
-  const auto plain = phimis::integrate(f, three, {.budget = 90, .iterations = 3}, phimis::fixed_rule<3>());
+  const auto plain = phimis::integrate(f, three, {.budget = 90, .iterations = 3, .growth = 1}, phimis::fixed_rule<3>());
   CHECK(plain.cost == 90);
   CHECK(plain.efficiency == Approx(1 / (90 * plain.standard_error * plain.standard_error)));
-  const auto priced = phimis::integrate(f, three, {.budget = 90, .iterations = 3},
+  const auto priced = phimis::integrate(f, three, {.budget = 90, .iterations = 3, .growth = 1},
                                         phimis::fixed_rule<3>({.costs = {{1, 2, 6}}}));
   CHECK(priced.cost == 30 * (1 + 2 + 6));
   CHECK(priced.estimate == plain.estimate);

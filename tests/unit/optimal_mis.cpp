@@ -86,7 +86,7 @@ TEST_CASE(
                        [&](const auto& s) { streamed.add(s.observed.technique, s.value, s.observed.pdfs); });
   }
   const auto pooled =
-      phimis::integrate(f, techniques, {.seed = 1}, phimis::fixed_rule<2>(), phimis::pooled_control_variates{});
+      phimis::integrate(f, techniques, {.growth = 1, .seed = 1}, phimis::fixed_rule<2>(), phimis::pooled_control_variates{});
   CHECK(streamed.samples() == pooled.samples);
   // But for the shrinkage of the pool, which is that of one sample among 500.
   CHECK(std::fabs(streamed.estimate() - pooled.estimate) < 0.01 * pooled.standard_error);

@@ -5,8 +5,9 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/divergence_at.hpp>
-#include <phimis/core/minimise_pair.hpp>
+#include <phimis/core/minimisation.hpp>
 #include <phimis/core/minimise_rows.hpp>
+#include <phimis/core/row_parts.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/table.hpp>
 
@@ -111,18 +112,11 @@ class exact_minimiser : public rule_base<typename Table::real, Table::techniques
 
   PHIMIS_HOST_DEVICE row_minimum minimise(const minimisation<Real>& wanted) noexcept {
     const columns<Real, M> rows = this->memory().table.view();
-    if constexpr (M == 2) {
-      const bool priced = detail::is_variance<Divergence>::value && wanted.costs[0] != wanted.costs[1];
-      if (!priced) {
-        return pair_minimisation<Divergence, Real>(divergence_, rows, this->memory().largest, wanted)
-            .minimise(this->state_.fractions.value);
-      }
-    }
     double memory[minimise_doubles<Divergence>(M)];
     int indices[minimise_indices(M)];
     const column_pointers<Real> pointers{rows.u, rows.w, rows.y, rows.n, M};
-    return row_minimisation<Divergence, Real>(divergence_, pointers, this->memory().largest, wanted, memory, indices)
-        .minimise(this->state_.fractions.value);
+    return minimise_rows(divergence_, pointers, this->memory().largest, wanted, memory, indices,
+                         this->state_.fractions.value);
   }
 
   Divergence divergence_;

@@ -8,8 +8,10 @@
 #include <phimis/core/finite.hpp>
 #include <phimis/core/kink.hpp>
 #include <phimis/core/limits.hpp>
-#include <phimis/core/minimise_rows.hpp>
+#include <phimis/core/minimisation.hpp>
+#include <phimis/core/mixture_sums.hpp>
 #include <phimis/core/pair_sums.hpp>
+#include <phimis/core/row_parts.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/solve_pair.hpp>
 #include <phimis/core/table.hpp>
@@ -32,12 +34,16 @@ class pair_minimisation {
     constexpr Real smallest = 4 * smallest_normal<Real>;
     const Real inverse = 1 / (largest > smallest ? largest : smallest);
     const double n = static_cast<double>(rows.n);
-    double mass[2];
-    mean_ = detail::masses(column_pointers<Real>{rows.u, rows.w, rows.y, rows.n, 2}, inverse, mass) / n;
+    double mass[2] = {1, 1};
+    // Powers by themselves ask for no mean.
+    const bool normalised = wanted.variate == control_variate::on;
+    if (normalised || detail::needs_mean(divergence) || wanted.prior > 0 || wanted.silent == silent_technique::kept) {
+      mean_ = detail::masses(column_pointers<Real>{rows.u, rows.w, rows.y, rows.n, 2}, inverse, mass) / n;
+    }
     unit_ = static_cast<double>(inverse);
     silent_ = wanted.silent == silent_technique::kept && (!(mass[0] > 0) || !(mass[1] > 0));
     for (int k = 0; k < 2; ++k) {
-      kappa_[k] = wanted.variate == control_variate::on && mass[k] > 0 ? n / mass[k] : 1;
+      kappa_[k] = normalised && mass[k] > 0 ? n / mass[k] : 1;
       kappa_[k] /= static_cast<double>(wanted.costs[k]) / cost_unit(wanted, 2);
     }
     if (detail::needs_mean(divergence)) {
@@ -60,15 +66,15 @@ class pair_minimisation {
         to_solver(static_cast<double>(wanted_.from[0]), static_cast<double>(wanted_.from[1]));
     prior_ = to_solver(static_cast<double>(wanted_.start[0]), static_cast<double>(wanted_.start[1]));
     const auto evaluate = [&](const pair_fractions& at) { return sums_at(at); };
-    const pair_solution found =
-        solve_pair(evaluate, low, high, start, 4 * rounding, local ? objective::any : objective::convex);
+    const pair_solution found = solve_pair(evaluate, low, high, start, 4 * rounding,
+                                           local ? objective::any : objective::convex, wanted_.tolerance);
 
     row_minimum result;
     result.solution.lambda = found.lambda;
     result.solution.evaluations = result.solution.iterations = found.evaluations;
     result.solution.residual = found.residual;
     // A step of s that crosses zero within the last digit of α is a root of a φ with a kink.
-    const bool converged = found.residual <= 1e4 * rounding;
+    const bool converged = found.residual <= 1e4 * rounding || found.residual <= wanted_.tolerance;
     if (!converged && detail::is_kinked<Divergence>::value && found.bracketed) result.solution.residual = 0;
     if (!local) result.solution.gap = result.solution.residual;
 
@@ -140,7 +146,7 @@ class pair_minimisation {
   const minimisation<Real>& wanted_;
   double kappa_[2];
   double unit_;
-  double mean_;
+  double mean_ = 1;
   pair_fractions prior_{};
   bool silent_;
 };

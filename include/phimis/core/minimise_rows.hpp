@@ -7,88 +7,20 @@
 #include <phimis/core/finite.hpp>
 #include <phimis/core/kink.hpp>
 #include <phimis/core/limits.hpp>
+#include <phimis/core/minimisation.hpp>
+#include <phimis/core/minimise_pair.hpp>
 #include <phimis/core/mixture_sums.hpp>
+#include <phimis/core/row_parts.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/simplex_newton.hpp>
 #include <phimis/core/simplex_problem.hpp>
+#include <phimis/core/table.hpp>
 #include <phimis/core/variance_on_simplex.hpp>
 
 #include <cstddef>
 #include <type_traits>
 
 namespace phimis {
-
-/// Whether each pdf is made to integrate to one on the sample.
-///
-/// E_q[p_k/q] = 1 is known. Dividing p_k by its mean Σ_j(p_kj/q_j)/n on the sample before the divergence is minimised
-/// removes most of the noise of the fractions, and makes a zero-variance mixture be found exactly from any sample. At
-/// the solution it is the control variate λ̂ Σ_j (p_kj/q_j − 1) with the self-normalised λ̂ = Σ(p/q)s / Σ(p/q), but the
-/// problem stays convex. It must be off where a pdf is defective (∫ p_k < 1).
-///
-/// Source the control variate is that of He & Owen 2014, for every score; as a normalisation, ours.
-enum class control_variate { on, off };
-
-/// What a technique without density at any observation gets.
-enum class silent_technique {
-  kept,   ///< the fraction that it has: nothing is known of it
-  judged  ///< what minimises: its floor
-};
-
-/// A minimisation over m techniques.
-///
-/// Shapes start[m], from[m], floors[m], costs[m], frozen[m].
-template <class Real>
-struct minimisation {
-  const Real* start;  ///< of the prior, and of frozen techniques
-  const Real* from;   ///< where the search starts
-  const Real* floors;
-  const Real* costs;
-  const bool* frozen;
-  Real prior = 0;
-  double mass = 0;  ///< what sums are divided by to be means; 0: the number of rows
-  control_variate variate = control_variate::on;
-  silent_technique silent = silent_technique::judged;
-};
-
-/// The unit of costs of m techniques in which nothing depends on theirs: what a sample costs at the start, where the prior
-/// is then in units of samples. Of equal costs exactly that cost.
-template <class Real>
-PHIMIS_HOST_DEVICE double cost_unit(const minimisation<Real>& wanted, int m) noexcept {
-  const double first = static_cast<double>(wanted.costs[0]);
-  double mean = 0;  // over the first
-  bool equal = true;
-  for (int k = 0; k < m; ++k) {
-    mean += static_cast<double>(wanted.start[k]) * (static_cast<double>(wanted.costs[k]) / first);
-    equal = equal && wanted.costs[k] == wanted.costs[0];
-  }
-  return equal ? first : first * mean;
-}
-
-/// A minimum, and how good it is.
-struct row_minimum {
-  rule_status status = rule_status::no_information;
-  simplex_solution solution{};
-};
-
-namespace detail {
-
-/// Whether a divergence depends on the unit of f.
-template <class Divergence>
-PHIMIS_HOST_DEVICE bool needs_mean(const Divergence& divergence) noexcept {
-  if constexpr (has_exponent<Divergence>::value) {
-    return divergence.exponent() == 0;
-  } else {
-    return !std::is_same<Divergence, multi_sample_variance>::value;
-  }
-}
-
-/// The variances, which f and |f| do not share and which cost times variance is about.
-template <class Divergence>
-struct is_variance : std::is_base_of<one_sample_variance, Divergence> {};
-template <>
-struct is_variance<multi_sample_variance> : std::true_type {};
-
-}  // namespace detail
 
 /// Memory of `minimise_rows` for m techniques: what a caller without a heap puts on its stack.
 template <class Divergence>
@@ -155,7 +87,9 @@ class row_minimisation {
     for (int k = 0; k < rows_.m; ++k) {
       if (held(k)) alpha[k] = fixed(k);
     }
-    if (!(found.residual <= acceptable)) return {rule_status::not_converged, found};
+    if (!(found.residual <= acceptable) && !(found.residual <= wanted_.tolerance)) {
+      return {rule_status::not_converged, found};
+    }
     return {local ? rule_status::local : rule_status::updated, found};
   }
 
@@ -163,12 +97,11 @@ class row_minimisation {
   static constexpr double rounding = static_cast<double>(epsilon<Real>);
   static constexpr double acceptable = sizeof(Real) == 8 ? 1e-10 : 1e-3;
 
-  PHIMIS_HOST_DEVICE bool priced() const noexcept {
-    for (int k = 1; k < rows_.m; ++k) {
-      if (wanted_.costs[k] != wanted_.costs[0]) return true;
-    }
-    return false;
+  PHIMIS_HOST_DEVICE double tolerance() const noexcept {
+    return wanted_.tolerance > 4 * rounding ? wanted_.tolerance : 4 * rounding;
   }
+
+  PHIMIS_HOST_DEVICE bool priced() const noexcept { return has_prices(wanted_, rows_.m); }
 
   /// What sums are divided by to be means.
   PHIMIS_HOST_DEVICE double mass() const noexcept {
@@ -213,8 +146,7 @@ class row_minimisation {
   }
 
   template <class Problem>
-  PHIMIS_HOST_DEVICE simplex_solution solve(Problem& problem, double tolerance = 4 * rounding,
-                                            int opening = 2) noexcept {
+  PHIMIS_HOST_DEVICE simplex_solution solve(Problem& problem, double tolerance, int opening = 2) noexcept {
     simplex_newton<Problem> solver(problem, simplex_.size(), solver_memory_, solver_indices_);
     // Sums over rows are those of Real, but for the variances, which take rows to double.
     return solver.minimise(theta_, tolerance, opening, Problem::convex ? rounding : epsilon<double>);
@@ -232,15 +164,16 @@ class row_minimisation {
     if (many) {
       problem.read_every(every);
       settle(problem);
-      add(found, solve(problem, 1e-4));
+      add(found, solve(problem, tolerance() > 1e-4 ? tolerance() : 1e-4));
       problem.read_every(1);
     }
     settle(problem);
-    add(found, solve(problem, 4 * rounding, many ? 0 : 2));
+    add(found, solve(problem, tolerance(), many ? 0 : 2));
     // Scores may change by many orders of magnitude on the way: the unit of the end is not that of the start.
-    for (int again = 0; again < 4 && !(found.residual <= acceptable); ++again) {
+    for (int again = 0; again < 4 && !(found.residual <= acceptable || found.residual <= wanted_.tolerance);
+         ++again) {
       problem.choose_unit(theta_);
-      add(found, solve(problem, 4 * rounding, 0));
+      add(found, solve(problem, tolerance(), 0));
     }
     return found;
   }
@@ -277,7 +210,7 @@ class row_minimisation {
     for (double width = 0.1; width > 0.9 * least; width /= 10) {
       const auto smooth = round_off(divergence_, width);
       auto problem = convex_problem(smooth);
-      add(found, solve(problem));
+      add(found, solve(problem, tolerance()));
       found.gap += width;
     }
     return found;
@@ -293,7 +226,7 @@ class row_minimisation {
     simplex_solution found;
     if (priced()) found = scan_prices(model);
     auto problem = variance_problem(model);
-    add(found, solve(problem));
+    add(found, solve(problem, tolerance()));
     found.gap = infinity<double>;  // a bound of what is convex
     return found;
   }
@@ -313,7 +246,7 @@ class row_minimisation {
     };
     const auto look = [&](double price) {
       convex.charge(price * mass(), wanted_.costs);
-      add(work, solve(convex));
+      add(work, solve(convex, tolerance()));
       evaluate(objective);
       if (!(objective.value() < least)) return false;
       least = objective.value();
@@ -322,7 +255,8 @@ class row_minimisation {
     };
     look(0);
     const double scale = objective.second_moment() / objective.cost();
-    for (double share = 64; share > 1e-6; share /= 4) look(share * scale);  // the scale may be near the end of the range
+    for (double share = 64; share > 1e-6; share /= 4)
+      look(share * scale);  // the scale may be near the end of the range
     for (int step = 0; step < 20; ++step) {
       for (int i = 0; i < simplex_.size(); ++i) theta_[i] = best_[i];
       evaluate(objective);
@@ -349,6 +283,21 @@ class row_minimisation {
   double unit_;
   double mean_;
 };
+
+/// The fractions that minimise a divergence on rows, written to alpha[m], by the better of two ways: of two techniques by
+/// `pair_minimisation`, unless cost times variance is meant.
+///
+/// Requires as `row_minimisation`.
+template <class Divergence, class Real>
+PHIMIS_HOST_DEVICE row_minimum minimise_rows(const Divergence& divergence, const column_pointers<Real>& rows,
+                                             Real largest, const minimisation<Real>& wanted, double* memory,
+                                             int* indices, Real* alpha) noexcept {
+  if (rows.m == 2 && !(detail::is_variance<Divergence>::value && has_prices(wanted, 2))) {
+    const columns<Real, 2> pair{rows.u, rows.w, {rows.y[0], rows.y[1]}, rows.n};
+    return pair_minimisation<Divergence, Real>(divergence, pair, largest, wanted).minimise(alpha);
+  }
+  return row_minimisation<Divergence, Real>(divergence, rows, largest, wanted, memory, indices).minimise(alpha);
+}
 
 }  // namespace phimis
 

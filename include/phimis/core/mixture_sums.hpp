@@ -5,78 +5,17 @@
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/divergence_at.hpp>
-#include <phimis/core/kink.hpp>
+#include <phimis/core/mixture_scores.hpp>
 #include <phimis/core/pack.hpp>
 #include <phimis/core/power_terms.hpp>
+#include <phimis/core/row_parts.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <type_traits>
 
 namespace phimis {
 
-/// Rows by column, for a number of techniques that is known when it runs. Shapes u[n], w[n], y[m][n].
-template <class Real>
-struct column_pointers {
-  const Real* u;
-  const Real* w;
-  const Real* const* y;
-  std::ptrdiff_t n;
-  int m;
-};
-
 namespace detail {
-
-inline constexpr int block_rows = 64;
-
-/// Scores of a block of rows: a = w s(t), b = w t s'(t)/x, c = w times the size of s, and their part of λ = Σ x c.
-template <class Real>
-struct score_block {
-  Real a[block_rows];
-  Real b[block_rows];
-  Real c[block_rows];  // only of scores that change sign
-};
-
-/// In the power family: one division a row.
-template <class Power>
-struct power_block {
-  static constexpr bool packed = Power::packed;
-  static constexpr bool changes_sign = false;
-  Power power;
-  double exponent;
-
-  template <class V, class Real>
-  PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b, V& c) const noexcept {
-    const V r = Real(1) / x;
-    const V v = power.template term<Real>(w, u, x, r);
-    const V vr = v * r;
-    a = exponent < 0 ? -vr : vr;
-    c = vr;
-    b = Real(std::fabs(exponent)) * vr * r;
-    return v;
-  }
-};
-
-/// Any score, also one that crosses zero.
-template <class Divergence>
-struct any_block {
-  static constexpr bool packed = false;
-  static constexpr bool changes_sign = true;
-  const Divergence& divergence;
-  double zero;  // s(0), or 0 where constants cancel
-
-  template <class V, class Real>
-  PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b, V& c) const noexcept {
-    const phimis::score<Real> s = score_at(divergence, u / x);
-    const Real value = s.value - static_cast<Real>(zero);
-    a = w * value;
-    b = w * s.slope / x;
-    // What cancels in s, and what it changes by; but of a kink, whose slope is no scale.
-    const Real slope = is_rounded_off<Divergence>::value && s.slope > 1 ? Real(1) : s.slope;
-    c = w * ((value < 0 ? -value : value) + slope + static_cast<Real>(zero < 0 ? -zero : zero));
-    return x * c;
-  }
-};
 
 /// Sums over rows at a mixture x_j = Σ β_k y_kj, block by block: each block's scores stay in cache while all techniques
 /// read them.
@@ -88,49 +27,51 @@ class mixture_block_sums {
                                         const Scores& scores, int every) noexcept
       : rows_(rows), beta_(beta), unit_(static_cast<Real>(unit)), scores_(scores), every_(every) {}
 
-  /// λ, G_k = Σ_j w_j y_kj s(t_j), and S_k, the size of its terms: Σ_j w_j y_kj |s(t_j)| of a power
-  PHIMIS_HOST_DEVICE double gradient(double* gradient, double* sizes) const noexcept {
-    for (int k = 0; k < rows_.m; ++k) gradient[k] = sizes[k] = 0;
-    double lambda = 0;
-    for_blocks([&](auto lane, std::ptrdiff_t first, int count) {
-      using V = decltype(lane);
-      score_block<Real> block;
-      lambda += fill<V>(first, count, block);
-      add_dots<V>(first, block.a, count, gradient);
-      if constexpr (Scores::changes_sign) add_dots<V>(first, block.c, count, sizes);
-    });
-    for (int k = 0; k < rows_.m && !Scores::changes_sign; ++k)
-      sizes[k] = gradient[k] < 0 ? -gradient[k] : gradient[k];
-    return lambda;
+  /// sums[2m + 1]: λ, then G_k = Σ_j w_j y_kj s(t_j), then S_k, the size of its terms: Σ_j w_j y_kj |s(t_j)| of a power
+  PHIMIS_HOST_DEVICE void gradient(double* sums) const noexcept {
+    const int m = rows_.m;
+    sum_parts(rows_, Scores::changes_sign ? 2 * m + 1 : m + 1, sums,
+              [&](std::ptrdiff_t from, std::ptrdiff_t to, double* own) {
+                for_blocks(from, to, [&](auto lane, std::ptrdiff_t first, int count) {
+                  using V = decltype(lane);
+                  score_block<Real> block;
+                  own[0] += fill<V>(first, count, block);
+                  add_dots<V>(first, block.a, count, own + 1);
+                  if constexpr (Scores::changes_sign) add_dots<V>(first, block.c, count, own + 1 + m);
+                });
+              });
+    for (int k = 0; k < m && !Scores::changes_sign; ++k)
+      sums[1 + m + k] = sums[1 + k] < 0 ? -sums[1 + k] : sums[1 + k];
   }
 
   /// H_kl = Σ_j w_j y_kj y_lj t_j s'(t_j)/x_j over a support; the last coordinate is Σ fixed_k y_k where `fixed` is given.
   PHIMIS_HOST_DEVICE void hessian(const int* support, int size, const double* fixed, double* hessian) const noexcept {
     const int order = size + (fixed != nullptr ? 1 : 0);
-    for (int i = 0; i < order * order; ++i) hessian[i] = 0;
-    for_blocks([&](auto lane, std::ptrdiff_t first, int count) {
-      using V = decltype(lane);
-      score_block<Real> block;
-      fill<V>(first, count, block);
-      Real base[block_rows];
-      if (fixed != nullptr) mix<V>(fixed, Real(0), first, count, base);
-      const auto column = [&](int a) { return a < size ? rows_.y[support[a]] + first : base; };
-      for (int a = 0; a < order; a += 2) {
-        const int a1 = a + 1 < order ? a + 1 : a;
-        Real scaled[2][block_rows];
-        multiply<V>(column(a), block.b, count, scaled[0]);
-        multiply<V>(column(a1), block.b, count, scaled[1]);
-        for (int b = a; b < order; b += 4) {
-          const Real* const y[4] = {column(b), column(b + 1 < order ? b + 1 : b), column(b + 2 < order ? b + 2 : b),
-                                    column(b + 3 < order ? b + 3 : b)};
-          double sums[8];
-          products<V>(scaled[0], scaled[1], y, count, sums);
-          for (int i = 0; i < 4 && b + i < order; ++i) {
-            hessian[a * order + b + i] += sums[i];
-            if (a1 > a) hessian[a1 * order + b + i] += sums[4 + i];
+    sum_parts(rows_, order * order, hessian, [&](std::ptrdiff_t from, std::ptrdiff_t to, double* own) {
+      for_blocks(from, to, [&](auto lane, std::ptrdiff_t first, int count) {
+        using V = decltype(lane);
+        score_block<Real> block;
+        fill<V>(first, count, block);
+        Real base[block_rows];
+        if (fixed != nullptr) mix<V>(fixed, Real(0), first, count, base);
+        const auto column = [&](int a) { return a < size ? rows_.y[support[a]] + first : base; };
+        for (int a = 0; a < order; a += 2) {
+          const int a1 = a + 1 < order ? a + 1 : a;
+          Real scaled[2][block_rows];
+          multiply<V>(column(a), block.b, count, scaled[0]);
+          multiply<V>(column(a1), block.b, count, scaled[1]);
+          for (int b = a; b < order; b += 4) {
+            const Real* const y[4] = {column(b), column(b + 1 < order ? b + 1 : b), column(b + 2 < order ? b + 2 : b),
+                                      column(b + 3 < order ? b + 3 : b)};
+            double sums[8];
+            products<V>(scaled[0], scaled[1], y, count, sums);
+            for (int i = 0; i < 4 && b + i < order; ++i) {
+              own[a * order + b + i] += sums[i];
+              if (a1 > a) own[a1 * order + b + i] += sums[4 + i];
+            }
           }
         }
-      }
+      });
     });
     for (int a = 0; a < order; ++a) {
       for (int b = 0; b < a; ++b) hessian[a * order + b] = hessian[b * order + a];
@@ -140,16 +81,23 @@ class mixture_block_sums {
   /// The |t| of the largest |s| among rows with u ≠ 0; 0 without any.
   PHIMIS_HOST_DEVICE double reference(bool largest) const noexcept {
     double found = 0;
-    for_blocks([&](auto lane, std::ptrdiff_t first, int count) {
-      Real x[block_rows];
-      mix<decltype(lane)>(beta_, tiny, first, count, x);
-      for (int i = 0; i < count; ++i) {
-        const Real u = rows_.u[first + i] < 0 ? -rows_.u[first + i] : rows_.u[first + i];
-        if (!(u > 0)) continue;
-        const double t = static_cast<double>(unit_ * u / x[i]);
-        if (!(found > 0) || (largest ? t > found : t < found)) found = t;
-      }
-    });
+    const auto keep = [largest](double& best, double t) {
+      if (t > 0 && (!(best > 0) || (largest ? t > best : t < best))) best = t;
+    };
+    for_parts(
+        rows_, &found,
+        [&](std::ptrdiff_t from, std::ptrdiff_t to, double* own) {
+          *own = 0;
+          for_blocks(from, to, [&](auto lane, std::ptrdiff_t first, int count) {
+            Real x[block_rows];
+            mix<decltype(lane)>(beta_, tiny, first, count, x);
+            for (int i = 0; i < count; ++i) {
+              const Real u = rows_.u[first + i] < 0 ? -rows_.u[first + i] : rows_.u[first + i];
+              if (u > 0) keep(*own, static_cast<double>(unit_ * u / x[i]));
+            }
+          });
+        },
+        [&](int, const double* own) { keep(found, *own); });
     return found;
   }
 
@@ -158,17 +106,17 @@ class mixture_block_sums {
   static constexpr int together = 4;  // columns read at once: a block's sums stay in registers
 
   template <class Body>
-  PHIMIS_HOST_DEVICE void for_blocks(const Body& body) const noexcept {
+  PHIMIS_HOST_DEVICE void for_blocks(std::ptrdiff_t from, std::ptrdiff_t to, const Body& body) const noexcept {
     using V = pack<Real>;
     constexpr std::ptrdiff_t width = pack_width<Real>;
-    std::ptrdiff_t j = 0;
-    while (rows_.n - j >= width) {
-      const std::ptrdiff_t rest = rows_.n - j;
+    std::ptrdiff_t j = from;
+    while (to - j >= width) {
+      const std::ptrdiff_t rest = to - j;
       const std::ptrdiff_t count = rest < block_rows ? rest / width * width : block_rows;
       body(V{}, j, static_cast<int>(count));
       j += count + (every_ - 1) * block_rows;
     }
-    if (j < rows_.n) body(Real{}, j, static_cast<int>(rows_.n - j));
+    if (j < to) body(Real{}, j, static_cast<int>(to - j));
   }
 
   /// Σ weight_k y_k + least
@@ -306,13 +254,18 @@ struct product_terms {
 /// Σ_j w_j y_kj of every technique, and returns Σ_j w_j |u_j| unit.
 template <class Real>
 PHIMIS_HOST_DEVICE double masses(const column_pointers<Real>& rows, Real unit, double* mass) noexcept {
-  const auto product = [&](const Real* y, Real factor) {
+  const auto sum = [&](std::ptrdiff_t from, std::ptrdiff_t to, const Real* y, Real factor) {
     double total[1] = {};
-    sum_rows<1, Real>(rows.n, product_terms<Real>{rows.w, y, factor}, total);
+    sum_rows<1, Real>(to - from, product_terms<Real>{rows.w + from, y + from, factor}, total);
     return total[0];
   };
-  for (int k = 0; k < rows.m; ++k) mass[k] = product(rows.y[k], Real(1));
-  return product(rows.u, unit);
+  sum_parts(rows, rows.m, mass, [&](std::ptrdiff_t from, std::ptrdiff_t to, double* own) {
+    for (int k = 0; k < rows.m; ++k) own[k] = sum(from, to, rows.y[k], Real(1));
+  });
+  double size = 0;
+  sum_parts(rows, 1, &size,
+            [&](std::ptrdiff_t from, std::ptrdiff_t to, double* own) { *own = sum(from, to, rows.u, unit); });
+  return size;
 }
 
 }  // namespace detail

@@ -8,6 +8,7 @@
 #include <phimis/core/finite.hpp>
 #include <phimis/core/limits.hpp>
 #include <phimis/core/mixture_sums.hpp>
+#include <phimis/core/row_parts.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -133,7 +134,7 @@ class divergence_on_simplex {
  public:
   static constexpr bool convex = true;
   static constexpr bool may_vanish = !has_exponent<Divergence>::value;
-  PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 2 * m + (m + 1) * (m + 1); }
+  PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 2 * m + 1 + (m + 1) * (m + 1); }
 
   PHIMIS_HOST_DEVICE divergence_on_simplex(const Divergence& divergence, const column_pointers<Real>& rows,
                                            floored_simplex& on, const double* kappa, bool normalised, double unit,
@@ -148,7 +149,8 @@ class divergence_on_simplex {
         mean_(mean),
         prior_(prior),
         shares_(prior_shares),
-        raw_(memory),
+        lambda_(memory),
+        raw_(lambda_ + 1),
         raw_sizes_(raw_ + rows.m),
         hessian_(raw_sizes_ + rows.m),
         techniques_(indices) {}
@@ -173,21 +175,20 @@ class divergence_on_simplex {
 
   PHIMIS_HOST_DEVICE double gradient(const double* theta, double* gradient, double* sizes) noexcept {
     on_.at(theta);
-    double lambda = 0;
     with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
-                      [&](const auto& sums) { lambda = sums.gradient(raw_, raw_sizes_); });
+                      [&](const auto& sums) { sums.gradient(lambda_); });
     for (int k = 0; k < rows_.m && prior_ > 0; ++k) {
       const double a = on_.beta()[k] / kappa_[k];
       const score<double> s = prior_score(k, a);
       if (!(a > 0) && !(shares_[k] > 0)) continue;
       raw_[k] += prior_ * s.value / kappa_[k];
       raw_sizes_[k] += prior_ * std::fabs(s.value) / kappa_[k];
-      lambda += prior_ * a * std::fabs(s.value);
+      *lambda_ += prior_ * a * std::fabs(s.value);
     }
     for (int k = 0; k < rows_.m && price_ > 0; ++k) raw_[k] -= price_ * static_cast<double>(costs_[k]) / kappa_[k];
     on_.pull_back(raw_, gradient);
     on_.pull_back(raw_sizes_, sizes);
-    return lambda;
+    return *lambda_;
   }
 
   PHIMIS_HOST_DEVICE void hessian(const int* support, int size, double* hessian) noexcept {
@@ -255,6 +256,7 @@ class divergence_on_simplex {
   int every_ = 1;
   const Real* costs_ = nullptr;
   const double* shares_;
+  double* lambda_;  // and what `gradient` of the sums writes behind it
   double* raw_;
   double* raw_sizes_;
   double* hessian_;

@@ -71,15 +71,19 @@ enum class objective { convex, any };
 /// an eighth of the way, and the first change of sign is taken. An end is the answer where ζ points out of it. A ζ that
 /// is not finite pushes away from the nearer end.
 ///
+/// \param epsilon    the rounding of α and of the sums
+/// \param tolerance  of the residual, where that of rounding is not wanted
+///
 /// Requires low.first <= start.first <= high.first.   Errors none; the residual tells.
 /// Cost     2 to 4 evaluations from a near start, 4 to 10 from most others, 20 where Newton leaves the segment; at most
 ///          150.
 template <class Evaluate>
 [[gnu::noinline]] PHIMIS_HOST_DEVICE pair_solution solve_pair(const Evaluate& evaluate, pair_fractions low,
                                                               pair_fractions high, pair_fractions start,
-                                                              double epsilon,
-                                                              objective kind = objective::convex) noexcept {
+                                                              double epsilon, objective kind = objective::convex,
+                                                              double tolerance = 0) noexcept {
   constexpr int most = 150;
+  const double enough = tolerance > epsilon / 8 ? tolerance : epsilon / 8;
   bool low_known = false;  // ζ(low) > 0 was seen
   bool high_known = false;
   double last_step = 2;
@@ -101,7 +105,7 @@ template <class Evaluate>
     }
     // Where ζ is rounding of its sums, here or over the whole segment, no other α is better.
     const double range = size + std::fabs(at.slope);
-    if (finite && (size <= epsilon / 8 * at.lambda || range <= 16 * epsilon * at.lambda)) {
+    if (finite && (size <= enough * at.lambda || range <= 16 * epsilon * at.lambda)) {
       best.alpha = alpha;
       best.residual = residual;
       break;

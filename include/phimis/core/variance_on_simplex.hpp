@@ -4,7 +4,7 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/estimator.hpp>
-#include <phimis/core/mixture_sums.hpp>
+#include <phimis/core/row_parts.hpp>
 #include <phimis/core/simplex_problem.hpp>
 
 #include <cmath>
@@ -32,12 +32,12 @@ class variance_on_simplex {
  public:
   static constexpr bool convex = false;
   static constexpr bool may_vanish = false;
-  PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 3 * m + 2 * (m + 1) * (m + 1); }
+  PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 3 * m + 2 + 2 * (m + 1) * (m + 1); }
 
   /// costs[m] or null where all are equal; mass: what sums are divided by to be means; π[m] in the coordinates a.
   PHIMIS_HOST_DEVICE variance_on_simplex(sampling_model model, const column_pointers<Real>& rows, floored_simplex& on,
-                                         const double* kappa, const Real* costs, double unit, double mass, double prior,
-                                         const double* prior_shares, double* memory) noexcept
+                                         const double* kappa, const Real* costs, double unit, double mass,
+                                         double prior, const double* prior_shares, double* memory) noexcept
       : model_(model),
         rows_(rows),
         on_(on),
@@ -49,7 +49,7 @@ class variance_on_simplex {
         prior_shares_(prior_shares),
         slope_(memory),
         r_(memory + rows.m),
-        shares_(r_ + rows.m),
+        shares_(r_ + rows.m + 2),
         gram_(shares_ + rows.m),
         pairs_(gram_ + (rows.m + 1) * (rows.m + 1)) {}
 
@@ -63,24 +63,24 @@ class variance_on_simplex {
     const int m = rows_.m;
     on_.at(theta);
     const double* const beta = on_.beta();
-    second_ = 0;
-    double mean = 0;
     cost_ = 0;
-    for (int k = 0; k < m; ++k) {
-      slope_[k] = r_[k] = 0;
-      cost_ += cost(k) * beta[k];
-    }
-    for (std::ptrdiff_t j = 0; j < rows_.n; ++j) {
-      const point at = point_at(j);
-      if (at.f == 0) continue;
-      second_ += at.f * at.t;
-      mean += at.f;
-      for (int k = 0; k < m; ++k) {
-        const double y = static_cast<double>(rows_.y[k][j]);
-        slope_[k] -= y / at.x * at.f * at.t;  // of ∫ f²/p
-        r_[k] += y / at.x * at.f;
+    for (int k = 0; k < m; ++k) cost_ += cost(k) * beta[k];
+    // slope, r, ∫ f²/p and ∫ f, one behind the other
+    sum_parts(rows_, 2 * m + 2, slope_, [&](std::ptrdiff_t from, std::ptrdiff_t to, double* sums) {
+      for (std::ptrdiff_t j = from; j < to; ++j) {
+        const point at = point_at(j);
+        if (at.f == 0) continue;
+        for (int k = 0; k < m; ++k) {
+          const double y = static_cast<double>(rows_.y[k][j]);
+          sums[k] -= y / at.x * at.f * at.t;  // of ∫ f²/p
+          sums[m + k] += y / at.x * at.f;
+        }
+        sums[2 * m] += at.f * at.t;
+        sums[2 * m + 1] += at.f;
       }
-    }
+    });
+    second_ = r_[m];
+    const double mean = r_[m + 1];
     for (int k = 0; k < m; ++k) {
       if (!has_prior(k)) continue;
       const double t = prior_shares_[k] * kappa_[k] / beta[k];
@@ -94,12 +94,14 @@ class variance_on_simplex {
         shares_[k] = beta[k] * kappa_[k] * r_[k];
         squares += shares_[k] * r_[k];
       }
-      for (std::ptrdiff_t j = 0; j < rows_.n; ++j) {
-        const point at = point_at(j);
-        const double fh = at.f * mixed(shares_, j) / at.x / at.x;
-        for (int k = 0; k < m && fh != 0; ++k) slope_[k] += 2 * fh * static_cast<double>(rows_.y[k][j]);
-      }
-      for (int k = 0; k < m; ++k) slope_[k] -= kappa_[k] * r_[k] * r_[k];
+      sum_parts(rows_, m, pairs_, [&](std::ptrdiff_t from, std::ptrdiff_t to, double* sums) {
+        for (std::ptrdiff_t j = from; j < to; ++j) {
+          const point at = point_at(j);
+          const double fh = at.f * mixed(shares_, j) / at.x / at.x;
+          for (int k = 0; k < m && fh != 0; ++k) sums[k] += 2 * fh * static_cast<double>(rows_.y[k][j]);
+        }
+      });
+      for (int k = 0; k < m; ++k) slope_[k] += pairs_[k] - kappa_[k] * r_[k] * r_[k];
     }
     variance_ = second_ - squares;
     for (int k = 0; k < m; ++k) pairs_[k] = -(cost_ * slope_[k] + variance_ * cost(k));
@@ -111,23 +113,24 @@ class variance_on_simplex {
   PHIMIS_HOST_DEVICE void hessian(const int* support, int size, double* hessian) noexcept {
     const int m = rows_.m;
     const double* const beta = on_.beta();
-    double* const a = pairs_;
-    for (int i = 0; i < m * m; ++i) gram_[i] = a[i] = 0;
-    for (std::ptrdiff_t j = 0; j < rows_.n; ++j) {
-      const point at = point_at(j);
-      if (at.f == 0) continue;
-      const double h = multi() ? mixed(shares_, j) / at.x : 0;
-      const double second = (2 * at.f * at.t - 4 * at.f * h) / at.x / at.x;
-      const double first = at.f / at.x / at.x;
-      for (int k = 0; k < m; ++k) {
-        const double y = static_cast<double>(rows_.y[k][j]);
-        for (int l = k; l < m && y != 0; ++l) {
-          const double yy = y * static_cast<double>(rows_.y[l][j]);
-          gram_[k * m + l] += second * yy;
-          a[k * m + l] += first * yy;
+    double* const a = gram_ + m * m;  // read before `pairs_` is written
+    sum_parts(rows_, 2 * m * m, gram_, [&](std::ptrdiff_t from, std::ptrdiff_t to, double* sums) {
+      for (std::ptrdiff_t j = from; j < to; ++j) {
+        const point at = point_at(j);
+        if (at.f == 0) continue;
+        const double h = multi() ? mixed(shares_, j) / at.x : 0;
+        const double second = (2 * at.f * at.t - 4 * at.f * h) / at.x / at.x;
+        const double first = at.f / at.x / at.x;
+        for (int k = 0; k < m; ++k) {
+          const double y = static_cast<double>(rows_.y[k][j]);
+          for (int l = k; l < m && y != 0; ++l) {
+            const double yy = y * static_cast<double>(rows_.y[l][j]);
+            sums[k * m + l] += second * yy;
+            sums[(m + k) * m + l] += first * yy;
+          }
         }
       }
-    }
+    });
     for (int k = 0; k < m; ++k) {
       for (int l = 0; l < k; ++l) a[k * m + l] = a[l * m + k];
       if (!has_prior(k)) continue;

@@ -47,7 +47,7 @@ struct pooled_control_variates {
 /// and after a lost sample. Each iteration reads all earlier samples.
 ///
 /// Source   Kondapaneni et al. 2019; He & Owen 2014, with `joint_rule`.
-template <combination Combination = by_count>
+template <combination Combination = square_root>
 struct progressive_control_variates {
   template <class Value, int M>
   using run = detail::controlled_estimate<Value, M, progressive_control_variates>;
@@ -62,7 +62,7 @@ struct progressive_control_variates {
 /// its own; not below 8M samples, and not where a technique has a single one.
 ///
 /// Source   ours; cross-fitting as in statistics, with the density that makes it exact for decided counts.
-template <combination Combination = by_count>
+template <combination Combination = square_root>
 struct cross_fitted_control_variates {
   template <class Value, int M>
   using run = detail::controlled_estimate<Value, M, cross_fitted_control_variates>;

@@ -5,19 +5,16 @@
 #include <phimis/concepts.hpp>
 #include <phimis/core/divergence_at.hpp>
 #include <phimis/core/finite.hpp>
-#include <phimis/core/limits.hpp>
 #include <phimis/core/minimise_rows.hpp>
-#include <phimis/core/observation.hpp>
+#include <phimis/core/rule.hpp>
 #include <phimis/error.hpp>
+#include <phimis/solver/row_matrix.hpp>
 #include <phimis/validate.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -30,7 +27,11 @@ struct minimise_options {
   Eigen::VectorXd costs{};    ///< of a sample of each technique; 1 by default
   std::vector<int> frozen{};  ///< techniques, from 0, whose fraction stays at the start's
   double prior = 0;           ///< weight of the start, in observations
+  double tolerance = 0;       ///< of the residual, at which to stop; below it, as far as rounding lets it
   control_variate variate = control_variate::on;
+  /// Threads of the host, for more than two techniques and from 10⁵ observations on; none by default. The result is the same
+  /// to the last bit.
+  parallel_for run{};
 };
 
 /// The best fractions, and the certificate that they are.
@@ -38,10 +39,10 @@ struct minimum {
   Eigen::VectorXd fractions;
   rule_status status = rule_status::no_information;
   int iterations = 0;
-  int evaluations = 0;     ///< of the gradient
-  double lambda = 0;       ///< Σ_j p_j/q_j |s(t_j)|, in a unit of f that the solver chose
-  double residual = 0;     ///< of the conditions of optimality on all coordinates, over λ
-  double gap = 0;          ///< the objective is within gap · λ of its minimum, where it is convex
+  int evaluations = 0;             ///< of the gradient
+  double lambda = 0;               ///< Σ_j p_j/q_j |s(t_j)|, in a unit of f that the solver chose
+  double residual = 0;             ///< of the conditions of optimality on all coordinates, over λ
+  double gap = 0;                  ///< the objective is within gap · λ of its minimum, where it is convex
   rule_counters<double> counters;  ///< of the observations
 };
 
@@ -67,7 +68,7 @@ inline Eigen::VectorXd or_default(const Eigen::VectorXd& given, Eigen::Index m, 
 /// Shapes   f[n], pdfs[n × m], q[n]: the density that each observation was drawn from.
 /// Errors   std::invalid_argument for wrong shapes and options out of range. Observations that are not finite are
 ///          counted and left out.
-/// Cost     memory for n (m + 2) numbers; an iteration reads them two or three times.
+/// Cost     memory for n numbers, for n (m + 3) where rows are copied (`row_matrix`); an iteration reads all two or three times.
 template <divergence Divergence>
 minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::VectorXd>& f,
                  const Eigen::Ref<const Eigen::MatrixXd>& pdfs, const Eigen::Ref<const Eigen::VectorXd>& q,
@@ -91,6 +92,7 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
   validate<double>(std::span(start.data(), count), std::span(floors.data(), count), std::span(costs.data(), count),
                    std::span(frozen.get(), count), options.prior);
   validate_costs<double>(divergence, std::span(costs.data(), count));
+  require(is_density(options.tolerance), "tolerance", "must be finite and not negative", options.tolerance);
   Eigen::VectorXd least = floors;  // of each fraction; a frozen one has no floor
   for (Eigen::Index k = 0; k < m; ++k) {
     if (frozen[static_cast<std::size_t>(k)]) least[k] = start[k];
@@ -100,57 +102,26 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
     start = least + std::max(1 - least.sum(), 0.0) * above / above.sum();
   }
   minimum result{.fractions = start, .counters = {}};
-  Eigen::VectorXd u(n);
-  Eigen::VectorXd w(n);
-  Eigen::MatrixXd y(n, m);
-  double largest = 0;
-  Eigen::Index kept = 0;
-  // By tiles of rows: a column at a time is read and written, a row at a time is looked at.
-  constexpr Eigen::Index tile = 64;
-  using by_row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  by_row given;
-  by_row taken(tile, m);
-  for (Eigen::Index first = 0; first < n; first += tile) {
-    const Eigen::Index rows = std::min(tile, n - first);
-    given = pdfs.middleRows(first, rows);
-    Eigen::Index good = 0;
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const Eigen::Index j = first + i;
-      ++result.counters.observations;
-      if (!to_row(f[j], given.row(i).data(), static_cast<int>(m), q[j], u[kept + good], w[kept + good],
-                  taken.row(good).data())) {
-        ++result.counters.nonfinite;
-        continue;
-      }
-      double& of_row = u[kept + good++];
-      largest = std::max(largest, of_row);
-      if (!(of_row > 0)) ++result.counters.zero;
-      if (detail::is_variance<Divergence>::value && f[j] < 0) of_row = -of_row;
-    }
-    y.middleRows(kept, good) = taken.topRows(good);
-    kept += good;
-  }
+  const row_matrix rows(f, pdfs, q, detail::is_variance<Divergence>::value, options.run);
+  result.counters = rows.counters();
   if (result.counters.zero > 0 && infinite_at_zero(divergence)) {
     result.status = rule_status::infinite_divergence;
     return result;
   }
-  if (!(largest > 0)) return result;
+  if (!(rows.largest() > 0)) return result;
 
-  std::vector<const double*> columns;
-  for (Eigen::Index k = 0; k < m; ++k) columns.push_back(y.data() + k * n);
   std::vector<double> memory(static_cast<std::size_t>(minimise_doubles<Divergence>(static_cast<int>(m))));
   std::vector<int> indices(static_cast<std::size_t>(minimise_indices(static_cast<int>(m))));
-  const column_pointers<double> rows{u.data(), w.data(), columns.data(), kept, static_cast<int>(m)};
   const minimisation<double> wanted{.start = start.data(),
                                     .from = start.data(),
                                     .floors = floors.data(),
                                     .costs = costs.data(),
                                     .frozen = frozen.get(),
                                     .prior = options.prior,
+                                    .tolerance = options.tolerance,
                                     .variate = options.variate};
-  const row_minimum found =
-      row_minimisation<Divergence, double>(divergence, rows, largest, wanted, memory.data(), indices.data())
-          .minimise(result.fractions.data());
+  const row_minimum found = minimise_rows(divergence, rows.view(), rows.largest(), wanted, memory.data(),
+                                          indices.data(), result.fractions.data());
   result.status = found.status;
   result.iterations = found.solution.iterations;
   result.evaluations = found.solution.evaluations;

@@ -89,14 +89,15 @@ TEMPLATE_TEST_CASE("Gradients and Hessians are their definitions for any number 
           CAPTURE(name, n, normalised, every);
           const definition truth(divergence, rows, normalised ? 0 : phimis::score_at_zero(divergence),
                                  static_cast<std::size_t>(every));
-          double lambda = 0;
-          double g[M];
-          double sizes[M];
+          double gradient[2 * M + 1];
+          const double& lambda = gradient[0];
+          const double* const g = gradient + 1;
+          const double* const sizes = gradient + 1 + M;
           double h[9];
           const int support[2] = {4, 1};
           const double fixed[M] = {0, 0.5, 0, 0.25, 0};
           phimis::with_mixture_sums(divergence, view, beta, unit, normalised, every, [&](const auto& sums) {
-            lambda = sums.gradient(g, sizes);
+            sums.gradient(gradient);
             sums.hessian(support, 2, fixed, h);
           });
           const double scale = static_cast<double>(truth.lambda) * tolerance;
