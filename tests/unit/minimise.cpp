@@ -237,6 +237,16 @@ TEST_CASE("Variances see the sign of f as the exact rule does") {
   const minimum found = minimise(phimis::multi_sample_variance{}, with_signs, three.pdfs, three.q);
   CHECK(found.status == rule_status::local);
   CHECK(largest_difference(found.fractions, learnt) <= 1e-9);
+  // The same where a refused observation has rows copied.
+  const Eigen::Index n = with_signs.size();
+  VectorXd f(n + 1), q(n + 1);
+  MatrixXd pdfs(n + 1, 3);
+  f << not_a_number, with_signs;
+  q << 1, three.q;
+  pdfs << Eigen::RowVectorXd::Ones(3), three.pdfs;
+  const minimum copied = minimise(phimis::multi_sample_variance{}, f, pdfs, q);
+  CHECK(copied.counters.nonfinite == 1);
+  CHECK(largest_difference(copied.fractions, learnt) <= 1e-9);
   const minimum of_magnitude = minimise(phimis::multi_sample_variance{}, three.f, three.pdfs, three.q);
   CHECK(largest_difference(of_magnitude.fractions, learnt) > 1e-3);
 }
