@@ -7,7 +7,7 @@ usage="usage: tests/mutation.sh [--list] [--jobs N] [FILTER]
 
   FILTER     only mutants whose identifier, header and tests match this regular expression
   --list     changes and runs nothing: lists mutants with their header and tests
-  --jobs N   so many at a time; one for each core by default
+  --jobs N   so many at a time; CMAKE_BUILD_PARALLEL_LEVEL by default, or one for each core
   --help     this
 
 Fails where a mutant survives its tests, does not compile, or its text is not in its header exactly once; and where one of
@@ -15,7 +15,7 @@ the tests fails by itself. The compiler is \$CXX, g++ by default."
 
 filter=
 list=
-jobs=$(getconf _NPROCESSORS_ONLN)
+jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(getconf _NPROCESSORS_ONLN)}
 while [ $# -gt 0 ]; do
   case $1 in
     --list) list=yes ;;

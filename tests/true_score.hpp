@@ -65,6 +65,11 @@ real primitive(const D& divergence, real u, real p) {
     return p > 0 ? p * (true_phi_at(divergence, t).value + score_of_zero(divergence)) : infinity;
   }
 }
+inline real primitive(const phimis::pearson_vajda& divergence, real u, real p) {
+  if (divergence.k == 1) return std::fabs(u - p) - p;  // finite where p = 0
+  if (!(p > 0)) return u > 0 ? std::numeric_limits<real>::infinity() : 0;
+  return p * (true_phi_at(divergence, u / p).value + score_of_zero(divergence));
+}
 inline real primitive(const phimis::total_variation&, real u, real p) { return (std::fabs(u - p) - p) / 2; }
 inline real primitive(const phimis::reversed<phimis::pearson_vajda>& divergence, real u, real p) {
   if (!(u > 0)) return 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every function of core, called from device code. It is compiled, never run.
+// Every function of core, called from device code. It is compiled, never run; functions that are not inlined compile sooner.
 #include <phimis/core.hpp>
 
 #include <type_traits>
@@ -7,7 +7,7 @@
 using namespace phimis;  // a program, not a header
 
 template <class Divergence>
-__device__ double rules_of(const Divergence& divergence) {
+__device__ __noinline__ double rules_of(const Divergence& divergence) {
   exact_minimiser<Divergence, fixed_table<double, 2, 32>> exact(divergence);
   exact.observe({1, {{1, 1}}, 1, 0});
   exact.update();
@@ -27,7 +27,7 @@ __device__ double rules_of(const Divergence& divergence) {
 }
 
 template <class Divergence>
-__device__ float of_three(const Divergence& divergence) {
+__device__ __noinline__ float of_three(const Divergence& divergence) {
   exact_minimiser<Divergence, fixed_table<float, 3, 32>> exact(divergence);
   exact.observe({1, {{1, 1, 2}}, 1, 0});
   exact.update();
@@ -35,7 +35,7 @@ __device__ float of_three(const Divergence& divergence) {
 }
 
 template <class Divergence>
-__device__ float streaming_by(const Divergence& divergence) {
+__device__ __noinline__ float streaming_by(const Divergence& divergence) {
   streaming_newton<Divergence, float, 5> rule(divergence);
   rule.observe({1, {{1, 1, 2, 3, 1}}, 1, 0});
   rule.update();
@@ -46,13 +46,13 @@ __device__ float streaming_by(const Divergence& divergence) {
 }
 
 template <class Heuristic>
-__device__ double contribution_by(const Heuristic& heuristic) {
+__device__ __noinline__ double contribution_by(const Heuristic& heuristic) {
   const fractions<double, 3> alpha = equal_fractions<double, 3>();
   return contribution(heuristic, 1, 1.0, alpha, {{1, 2, 3}});
 }
 
 template <class Rule>
-__device__ double linear_by(Rule rule) {
+__device__ __noinline__ double linear_by(Rule rule) {
   rule.observe({1, {{1, 2, 1}}, 1, 0});
   rule.observe({2, {{1, 1, 3}}, 1, 1});
   rule.update();

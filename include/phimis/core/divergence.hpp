@@ -119,6 +119,20 @@ struct phi_taylor {
   Real second;
 };
 
+namespace detail {
+
+/// √((t − 1)² + rounded²). Under -ffast-math std::hypot squares t, which overflows where no fraction reaches a row.
+template <class Real>
+PHIMIS_HOST_DEVICE Real rounded_distance(Real t, Real rounded) noexcept {
+  const Real off = t < 1 ? 1 - t : t - 1;
+  const Real larger = off < rounded ? rounded : off;
+  if (!(larger > 0)) return 0;
+  const Real ratio = (off < rounded ? off : rounded) / larger;
+  return larger * std::sqrt(1 + ratio * ratio);
+}
+
+}  // namespace detail
+
 /// Total variation.  D(g, p) = ½ ∫ |g − p| dx,  φ(t) = ½ |t − 1|
 ///
 /// Source T Sec. 5.4, Eq. 26. Its score is a step: two techniques are bracketed, more are solved with the kink rounded off
@@ -128,7 +142,7 @@ struct total_variation {
   PHIMIS_HOST_DEVICE static constexpr bool smooth() noexcept { return false; }
   template <class Real>
   PHIMIS_HOST_DEVICE static phi_taylor<Real> taylor(Real t, Real rounded = 0) noexcept {
-    const Real distance = std::hypot(t - 1, rounded);
+    const Real distance = detail::rounded_distance(t, rounded);
     if (!(distance > 0)) return {0, 0, 0};
     const Real sine = rounded / distance;
     return {distance / 2, (t - 1) / distance / 2, sine * sine / distance / 2};
@@ -136,7 +150,7 @@ struct total_variation {
   /// t φ' − φ, which would cancel at large t.
   template <class Real>
   PHIMIS_HOST_DEVICE static score<Real> score_of(Real t, Real rounded = 0) noexcept {
-    const Real distance = std::hypot(t - 1, rounded);
+    const Real distance = detail::rounded_distance(t, rounded);
     if (!(distance > 0)) return {0, 0};
     return {((t - 1) - rounded * rounded) / distance / 2, t * (t * taylor(t, rounded).second)};
   }
@@ -153,7 +167,7 @@ struct pearson_vajda {
   template <class Real>
   PHIMIS_HOST_DEVICE phi_taylor<Real> taylor(Real t, Real rounded = 0) const noexcept {
     const Real order = static_cast<Real>(k);
-    const Real distance = std::hypot(t - 1, rounded);
+    const Real distance = detail::rounded_distance(t, rounded);
     if (!(distance > 0)) return {0, 0, order == 2 ? Real(2) : order < 2 && order > 1 ? infinity<Real> : Real(0)};
     const Real cosine = (t - 1) / distance;
     const Real sine = rounded / distance;
@@ -165,7 +179,7 @@ struct pearson_vajda {
   template <class Real>
   PHIMIS_HOST_DEVICE score<Real> score_of(Real t, Real rounded = 0) const noexcept {
     const Real order = static_cast<Real>(k);
-    const Real distance = std::hypot(t - 1, rounded);
+    const Real distance = detail::rounded_distance(t, rounded);
     if (!(distance > 0)) return {0, 0};
     const Real cosine = (t - 1) / distance;
     const Real sine = rounded / distance;

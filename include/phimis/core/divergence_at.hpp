@@ -21,14 +21,19 @@ template <class Divergence>
 struct has_own_score<Divergence, std::void_t<decltype(std::declval<const Divergence&>().score_of(1.0))>>
     : std::true_type {};
 
+/// No fraction reaches a row with a larger t. Its square is finite: -ffast-math takes t (t φ'') for t² φ'', ∞ · 0.
+template <class Real>
+inline constexpr Real largest_ratio = sizeof(Real) == 8 ? Real(1e150) : Real(1e18);
+
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE score<Real> forward_score(const Divergence& divergence, Real t) noexcept {
+  if (t > largest_ratio<Real>) t = largest_ratio<Real>;
   if constexpr (has_own_score<Divergence>::value) {
     if (t > 0) return divergence.score_of(t);
   }
   const phi_taylor<Real> phi = divergence.taylor(t);
-  if (!(t > 0)) return {-phi.value, 0};                      // t φ'(t) → 0 wherever φ(0) is finite
-  return {t * phi.first - phi.value, t * (t * phi.second)};  // t² may be infinite where φ is flat
+  if (!(t > 0)) return {-phi.value, 0};  // t φ'(t) → 0 wherever φ(0) is finite
+  return {t * phi.first - phi.value, t * t * phi.second};
 }
 
 /// The slope of φ at infinity, which is −s(0) of the reversed divergence; infinite where it still grows over 14 decades.

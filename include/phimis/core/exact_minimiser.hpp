@@ -115,8 +115,8 @@ class exact_minimiser : public rule_base<typename Table::real, Table::techniques
     double memory[minimise_doubles<Divergence>(M)];
     int indices[minimise_indices(M)];
     const column_pointers<Real> pointers{rows.u, rows.w, rows.y, rows.n, M};
-    return minimise_rows(divergence_, pointers, this->memory().largest, wanted, memory, indices,
-                         this->state_.fractions.value);
+    return minimise_rows<M>(divergence_, pointers, this->memory().largest, wanted, memory, indices,
+                            this->state_.fractions.value);
   }
 
   Divergence divergence_;

@@ -14,7 +14,6 @@
 #include <phimis/core/rule.hpp>
 #include <phimis/core/simplex_newton.hpp>
 #include <phimis/core/simplex_problem.hpp>
-#include <phimis/core/table.hpp>
 #include <phimis/core/variance_on_simplex.hpp>
 
 #include <cstddef>
@@ -72,6 +71,7 @@ class row_minimisation {
     for (int k = 0; k < rows_.m; ++k) {
       if (!(kappa_[k] > 0) || !is_finite(kappa_[k])) return {rule_status::not_converged, {}};
     }
+    if (detail::needs_mean(divergence_) && !is_finite(unit_ / mean_)) return {rule_status::not_converged, {}};
     simplex_.to_theta(wanted_.from, theta_);
     simplex_solution found;
     bool local = false;
@@ -210,6 +210,7 @@ class row_minimisation {
     for (double width = 0.1; width > 0.9 * least; width /= 10) {
       const auto smooth = round_off(divergence_, width);
       auto problem = convex_problem(smooth);
+      if (found.evaluations == 0) settle(problem);
       add(found, solve(problem, tolerance()));
       found.gap += width;
     }
@@ -287,16 +288,24 @@ class row_minimisation {
 /// The fractions that minimise a divergence on rows, written to alpha[m], by the better of two ways: of two techniques by
 /// `pair_minimisation`, unless cost times variance is meant.
 ///
+/// M is the number of techniques, or 0 where it is known when it runs: code of the other way is then not compiled.
+///
 /// Requires as `row_minimisation`.
-template <class Divergence, class Real>
+template <int M, class Divergence, class Real>
 PHIMIS_HOST_DEVICE row_minimum minimise_rows(const Divergence& divergence, const column_pointers<Real>& rows,
                                              Real largest, const minimisation<Real>& wanted, double* memory,
                                              int* indices, Real* alpha) noexcept {
-  if (rows.m == 2 && !(detail::is_variance<Divergence>::value && has_prices(wanted, 2))) {
-    const columns<Real, 2> pair{rows.u, rows.w, {rows.y[0], rows.y[1]}, rows.n};
-    return pair_minimisation<Divergence, Real>(divergence, pair, largest, wanted).minimise(alpha);
+  constexpr bool priced_variance = detail::is_variance<Divergence>::value;
+  if constexpr (M == 0 || M == 2) {
+    if (rows.m == 2 && !(priced_variance && has_prices(wanted, 2))) {
+      return pair_minimisation<Divergence, Real>(divergence, rows, largest, wanted).minimise(alpha);
+    }
   }
-  return row_minimisation<Divergence, Real>(divergence, rows, largest, wanted, memory, indices).minimise(alpha);
+  if constexpr (M != 2 || priced_variance) {
+    return row_minimisation<Divergence, Real>(divergence, rows, largest, wanted, memory, indices).minimise(alpha);
+  } else {
+    return {};
+  }
 }
 
 }  // namespace phimis

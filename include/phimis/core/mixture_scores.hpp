@@ -7,12 +7,11 @@
 #include <phimis/core/divergence_at.hpp>
 #include <phimis/core/kink.hpp>
 #include <phimis/core/power_terms.hpp>
+#include <phimis/core/row_parts.hpp>
 
 #include <cmath>
 
 namespace phimis::detail {
-
-inline constexpr int block_rows = 64;
 
 /// Scores of a block of rows: a = w s(t), b = w t s'(t)/x, c = w times the size of s, and their part of λ = Σ x c.
 template <class Real>
@@ -33,12 +32,11 @@ struct power_block {
   template <class V, class Real>
   PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b, V& c) const noexcept {
     const V r = Real(1) / x;
-    const V v = power.template term<Real>(w, u, x, r);
-    const V vr = v * r;
-    a = exponent < 0 ? -vr : vr;
-    c = vr;
-    b = Real(std::fabs(exponent)) * vr * r;
-    return v;
+    const power_term<V> term = power.template term<Real>(w, u, x, r);
+    a = exponent < 0 ? -term.score : term.score;
+    c = term.score;
+    b = Real(std::fabs(exponent)) * term.score * r;
+    return term.part;
   }
 };
 

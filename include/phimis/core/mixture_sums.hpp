@@ -256,7 +256,7 @@ template <class Real>
 PHIMIS_HOST_DEVICE double masses(const column_pointers<Real>& rows, Real unit, double* mass) noexcept {
   const auto sum = [&](std::ptrdiff_t from, std::ptrdiff_t to, const Real* y, Real factor) {
     double total[1] = {};
-    sum_rows<1, Real>(to - from, product_terms<Real>{rows.w + from, y + from, factor}, total);
+    sum_rows<1, Real>(from, to, product_terms<Real>{rows.w, y, factor}, total);
     return total[0];
   };
   sum_parts(rows, rows.m, mass, [&](std::ptrdiff_t from, std::ptrdiff_t to, double* own) {

@@ -80,25 +80,26 @@ PHIMIS_HOST_DEVICE V square_root(const V& v) noexcept {
   }
 }
 
-/// Sums over n rows. terms.add<V>(j, sums) adds row j, and as many after it as V has lanes, to N sums of type V.
+/// Adds up rows from `first` up to `last`. terms.add<V>(j, sums) adds row j, and as many after it as V has lanes, to N sums of type V.
 ///
 /// Lanes are independent sums, so no order is changed that a compiler would have to prove harmless; blocks of rows are
 /// added in double, so that rounding grows with the block, not with n.
 template <int N, class Real, class Terms>
-PHIMIS_HOST_DEVICE void sum_rows(std::ptrdiff_t n, const Terms& terms, double (&total)[N]) noexcept {
+PHIMIS_HOST_DEVICE void sum_rows(std::ptrdiff_t first, std::ptrdiff_t last, const Terms& terms,
+                                 double (&total)[N]) noexcept {
   using V = std::conditional_t<Terms::packed, pack<Real>, Real>;
   constexpr std::ptrdiff_t width = Terms::packed ? pack_width<Real> : 1;
   constexpr std::ptrdiff_t block = 64 * width;
-  std::ptrdiff_t j = 0;
-  while (n - j >= width) {
-    const std::ptrdiff_t last = n - j < block ? n - width : j + block - width;
+  std::ptrdiff_t j = first;
+  while (last - j >= width) {
+    const std::ptrdiff_t end = last - j < block ? last - width : j + block - width;
     V sums[N] = {};
-    for (; j <= last; j += width) terms.template add<V>(j, sums);
+    for (; j <= end; j += width) terms.template add<V>(j, sums);
     for (int i = 0; i < N; ++i) total[i] += sum_of_lanes<Real>(sums[i]);
   }
-  if (j < n) {
+  if (j < last) {
     Real rest[N] = {};
-    for (; j < n; ++j) terms.template add<Real>(j, rest);
+    for (; j < last; ++j) terms.template add<Real>(j, rest);
     for (int i = 0; i < N; ++i) total[i] += static_cast<double>(rest[i]);
   }
 }

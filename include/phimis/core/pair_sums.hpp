@@ -8,6 +8,7 @@
 #include <phimis/core/finite.hpp>
 #include <phimis/core/pack.hpp>
 #include <phimis/core/power_terms.hpp>
+#include <phimis/core/row_parts.hpp>
 #include <phimis/core/table.hpp>
 
 #include <cmath>
@@ -28,6 +29,7 @@ struct pair_sums {
   double zeta;
   double slope;
   double lambda;
+  double exponent = 0;  ///< of the power s = ±t^exponent; 0 where s is none
 };
 
 /// Where the sums are taken: the mixture Σ α_k κ_k p_k of pdfs that were multiplied by κ_k, and the unit of f.
@@ -49,11 +51,17 @@ namespace detail {
 /// A row, or a pack of rows, at a point.
 template <class Real>
 struct pair_rows {
-  columns<Real, 2> rows;
+  const Real* u;
+  const Real* w;
+  const Real* y1;
+  const Real* y2;
   Real b1, b2, k1, k2, unit;
 
-  PHIMIS_HOST_DEVICE pair_rows(const columns<Real, 2>& all, const pair_point<Real>& at) noexcept
-      : rows(all),
+  PHIMIS_HOST_DEVICE pair_rows(const column_pointers<Real>& rows, const pair_point<Real>& at) noexcept
+      : u(rows.u),
+        w(rows.w),
+        y1(rows.y[0]),
+        y2(rows.y[1]),
         b1(at.alpha[0] * at.kappa[0]),
         b2(at.alpha[1] * at.kappa[1]),
         k1(at.kappa[0]),
@@ -71,11 +79,30 @@ struct pair_rows {
   template <class V>
   PHIMIS_HOST_DEVICE row<V> at(std::ptrdiff_t j) const noexcept {
     constexpr Real tiny = sizeof(Real) == 8 ? Real(1e-300) : Real(1e-37);
-    const V y1 = load<V>(rows.y[0] + j);
-    const V y2 = load<V>(rows.y[1] + j);
-    return {y1, y2, b1 * y1 + b2 * y2 + tiny, k1 * y1 - k2 * y2, unit * load<V>(rows.u + j), load<V>(rows.w + j)};
+    const V first = load<V>(y1 + j);
+    const V second = load<V>(y2 + j);
+    return {first, second, b1 * first + b2 * second + tiny, k1 * first - k2 * second, unit * load<V>(u + j),
+            load<V>(w + j)};
   }
 };
+
+/// Sums over all rows, or of one block in `every`: of so few that no threads are asked.
+template <int N, class Real, class Terms>
+PHIMIS_HOST_DEVICE void sum_blocks(const column_pointers<Real>& rows, int every, const Terms& terms,
+                                   double (&total)[N]) noexcept {
+  if (every > 1) {
+    for (std::ptrdiff_t j = 0; j < rows.n; j += static_cast<std::ptrdiff_t>(every) * block_rows) {
+      sum_rows<N, Real>(j, rows.n - j < block_rows ? rows.n : j + block_rows, terms, total);
+    }
+    return;
+  }
+  if (rows.parts == nullptr) return sum_rows<N, Real>(0, rows.n, terms, total);  // ten rows, too, are fast
+  sum_parts(rows, N, total, [&](std::ptrdiff_t first, std::ptrdiff_t last, double* own) {
+    double sums[N] = {};
+    sum_rows<N, Real>(first, last, terms, sums);
+    for (int i = 0; i < N; ++i) own[i] = sums[i];
+  });
+}
 
 /// Terms of pair_sums in the power family, without the factors of s and t s'.
 template <class Real, class Power>
@@ -89,20 +116,20 @@ struct power_terms {
     const auto row = rows.template at<V>(j);
     const V r = Real(1) / row.x;
     const V e = row.d * r;
-    const V v = power.template term<Real>(row.w, row.u, row.x, r);
-    const V ve = v * e;
-    sums[0] += ve;
-    sums[1] += ve * e;
-    sums[2] += v;
+    const power_term<V> term = power.template term<Real>(row.w, row.u, row.x, r);
+    const V tilt = row.d * term.score;
+    sums[0] += tilt;
+    sums[1] += tilt * e;
+    sums[2] += term.part;
   }
 };
 
 template <class Real, class Power>
-PHIMIS_HOST_DEVICE pair_sums sum_powers(const Power& power, double exponent, const columns<Real, 2>& rows,
-                                        const pair_point<Real>& at) noexcept {
+PHIMIS_HOST_DEVICE pair_sums sum_powers(const Power& power, double exponent, const column_pointers<Real>& rows,
+                                        const pair_point<Real>& at, int every) noexcept {
   double total[3] = {};
-  sum_rows<3, Real>(rows.n, power_terms<Real, Power>{pair_rows<Real>(rows, at), power}, total);
-  return {exponent < 0 ? -total[0] : total[0], std::fabs(exponent) * total[1], total[2]};
+  sum_blocks<3, Real>(rows, every, power_terms<Real, Power>{pair_rows<Real>(rows, at), power}, total);
+  return {exponent < 0 ? -total[0] : total[0], std::fabs(exponent) * total[1], total[2], exponent};
 }
 
 /// Terms of pair_sums for any score.
@@ -117,13 +144,13 @@ struct score_terms {
   PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[3]) const noexcept {
     const auto row = rows.template at<V>(j);
     const V e = row.d / row.x;
-    const V wx = row.w * row.x;
+    const V wd = row.w * row.d;  // w x e, where w x may vanish
     const score<Real> s = score_at(divergence, row.u / row.x);
     const V value = s.value - zero;
     const V slope = is_finite(s.slope) ? s.slope : V(0);  // infinite at a kink of order below 2: no scale, no step
-    sums[0] += wx * e * value;
-    sums[1] += wx * e * e * slope;
-    sums[2] += wx * ((value < 0 ? -value : value) + slope);
+    sums[0] += wd * value;
+    sums[1] += wd * e * slope;
+    sums[2] += row.w * row.x * ((value < 0 ? -value : value) + slope);
   }
 };
 
@@ -158,20 +185,23 @@ struct variance_terms {
 
 /// pair_sums of any divergence that has a score. γ = ½, 1, 2 run without a power function.
 ///
+/// every: 1, or that only one block of rows in so many is read.
+///
 /// Requires α_k κ_k >= 0. At α_k = 0 a sum may be infinite.   Cost one division a row, two and two polynomials for other γ.
 template <class Divergence, class Real>
-PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const columns<Real, 2>& rows,
-                                      const pair_point<Real>& at) noexcept {
+PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const column_pointers<Real>& rows,
+                                      const pair_point<Real>& at, int every = 1) noexcept {
   pair_sums sums{};
-  const bool is_power = detail::with_power(
-      divergence, [&](const auto& power, double exponent) { sums = detail::sum_powers(power, exponent, rows, at); });
+  const bool is_power = detail::with_power(divergence, [&](const auto& power, double exponent) {
+    sums = detail::sum_powers(power, exponent, rows, at, every);
+  });
   if (is_power) return sums;
   if constexpr (detail::needs_any_score<Divergence>::value) {
     double total[3] = {};
     const detail::score_terms<Real, Divergence> terms{
         detail::pair_rows<Real>(rows, at), divergence,
         at.normalised ? Real(0) : static_cast<Real>(score_at_zero(divergence))};
-    detail::sum_rows<3, Real>(rows.n, terms, total);
+    detail::sum_blocks<3, Real>(rows, every, terms, total);
     sums = {total[0], total[1], total[2]};
   }
   return sums;
@@ -183,10 +213,10 @@ PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const column
 ///
 ///     ζ = Σ (p_1 − p_2)/q t² + n S',   slope = 2 Σ (p_1 − p_2)²/(q p) t² − n S'',   n = at.mass
 template <class Real>
-PHIMIS_HOST_DEVICE pair_sums sum_pair(const multi_sample_variance&, const columns<Real, 2>& rows,
-                                      const pair_point<Real>& at) noexcept {
+PHIMIS_HOST_DEVICE pair_sums sum_pair(const multi_sample_variance&, const column_pointers<Real>& rows,
+                                      const pair_point<Real>& at, int every = 1) noexcept {
   double total[9] = {};
-  detail::sum_rows<9, Real>(rows.n, detail::variance_terms<Real>{detail::pair_rows<Real>(rows, at)}, total);
+  detail::sum_blocks<9, Real>(rows, every, detail::variance_terms<Real>{detail::pair_rows<Real>(rows, at)}, total);
   const double n = at.mass;
   double s1 = 0;
   double s2 = 0;
@@ -203,6 +233,13 @@ PHIMIS_HOST_DEVICE pair_sums sum_pair(const multi_sample_variance&, const column
   s1 += m[0] * m[0] - m[1] * m[1];
   s2 += 4 * (m[0] * dm[0] - m[1] * dm[1]);
   return {total[0] + n * s1, 2 * total[1] - n * s2, total[2]};
+}
+
+/// pair_sums of rows by column.
+template <class Divergence, class Real>
+PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const columns<Real, 2>& rows,
+                                      const pair_point<Real>& at) noexcept {
+  return sum_pair(divergence, column_pointers<Real>{rows.u, rows.w, rows.y, rows.n, 2}, at);
 }
 
 }  // namespace phimis

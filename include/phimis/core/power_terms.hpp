@@ -11,34 +11,47 @@
 
 namespace phimis::detail {
 
-/// p s/q of one row in the power family, w x t^β with t = u/x, r = 1/x. Where s/t is simple, no power of t is formed.
+/// A row's s/q = w t^β and p s/q = w x t^β.
+///
+/// The first is not the second over x: where no fraction reaches the row, x is near the smallest number, and w x is none.
+template <class V>
+struct power_term {
+  V score;
+  V part;
+};
+
+/// The terms of one row in the power family, t = u/x, r = 1/x. Where s/t is simple, no power of t is formed.
 struct power_half {
   static constexpr bool packed = true;
   template <class Real, class V>
-  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V& x, const V& r) const noexcept {
-    return w * x * square_root<Real>(u * r);  // u x may vanish where u/x does not
+  PHIMIS_HOST_DEVICE power_term<V> term(const V& w, const V& u, const V& x, const V& r) const noexcept {
+    const V score = w * square_root<Real>(u * r);  // u x may vanish where u/x does not
+    return {score, x * score};
   }
 };
 struct power_one {
   static constexpr bool packed = true;
   template <class Real, class V>
-  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V&, const V&) const noexcept {
-    return w * u;
+  PHIMIS_HOST_DEVICE power_term<V> term(const V& w, const V& u, const V&, const V& r) const noexcept {
+    const V part = w * u;
+    return {part * r, part};
   }
 };
 struct power_two {
   static constexpr bool packed = true;
   template <class Real, class V>
-  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V&, const V& r) const noexcept {
-    return w * u * (u * r);
+  PHIMIS_HOST_DEVICE power_term<V> term(const V& w, const V& u, const V&, const V& r) const noexcept {
+    const V part = w * u * (u * r);
+    return {part * r, part};
   }
 };
 struct power_any {
   static constexpr bool packed = true;
   double beta;
   template <class Real, class V>
-  PHIMIS_HOST_DEVICE V term(const V& w, const V& u, const V& x, const V& r) const noexcept {
-    return w * x * power_of_packs<Real>(static_cast<Real>(beta))(u * r);
+  PHIMIS_HOST_DEVICE power_term<V> term(const V& w, const V& u, const V& x, const V& r) const noexcept {
+    const V score = w * power_of_packs<Real>(static_cast<Real>(beta))(u * r);
+    return {score, x * score};
   }
 };
 

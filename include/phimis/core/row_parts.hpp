@@ -23,6 +23,9 @@ struct row_parts {
   PHIMIS_HOST_DEVICE static constexpr int doubles(int m) noexcept { return 2 * (m + 1) * (m + 1); }
 };
 
+/// Rows that are read together: what is computed of them stays in cache, and of many rows some blocks tell where to start.
+inline constexpr int block_rows = 64;
+
 /// Rows by column, for a number of techniques that is known when it runs. Shapes u[n], w[n], y[m][n].
 template <class Real>
 struct column_pointers {

@@ -177,13 +177,14 @@ class divergence_on_simplex {
     on_.at(theta);
     with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
                       [&](const auto& sums) { sums.gradient(lambda_); });
-    for (int k = 0; k < rows_.m && prior_ > 0; ++k) {
+    const double weight = prior_ / every_;
+    for (int k = 0; k < rows_.m && weight > 0; ++k) {
       const double a = on_.beta()[k] / kappa_[k];
       const score<double> s = prior_score(k, a);
       if (!(a > 0) && !(shares_[k] > 0)) continue;
-      raw_[k] += prior_ * s.value / kappa_[k];
-      raw_sizes_[k] += prior_ * std::fabs(s.value) / kappa_[k];
-      *lambda_ += prior_ * a * std::fabs(s.value);
+      raw_[k] += weight * s.value / kappa_[k];
+      raw_sizes_[k] += weight * std::fabs(s.value) / kappa_[k];
+      *lambda_ += weight * a * std::fabs(s.value);
     }
     for (int k = 0; k < rows_.m && price_ > 0; ++k) raw_[k] -= price_ * static_cast<double>(costs_[k]) / kappa_[k];
     on_.pull_back(raw_, gradient);
@@ -219,7 +220,11 @@ class divergence_on_simplex {
 
  private:
   PHIMIS_HOST_DEVICE score<double> prior_score(int k, double a) const noexcept {
-    if (shares_[k] > 0) return score_at(divergence_, mean_ * shares_[k] / a);
+    if (shares_[k] > 0) {
+      const double t = mean_ * shares_[k] / a;
+      constexpr double largest = 1e308;
+      return score_at(divergence_, a > 0 && t > largest ? largest : t);  // a floor may be subnormal
+    }
     return {score_at_zero(divergence_), 0};
   }
 
@@ -230,7 +235,7 @@ class divergence_on_simplex {
     for (int k = 0; k < rows_.m; ++k) {
       const double a = on_.beta()[k] / kappa_[k];
       if (!(a > 0)) continue;
-      const double curvature = prior_ * prior_score(k, a).slope / a / (kappa_[k] * kappa_[k]);
+      const double curvature = prior_ / every_ * prior_score(k, a).slope / a / (kappa_[k] * kappa_[k]);
       int at = -1;
       for (int i = 0; i < size; ++i) {
         if (techniques_[i] == k) at = i;

@@ -59,6 +59,29 @@ PHIMIS_HOST_DEVICE inline pair_fractions between(const pair_fractions& a, const 
   return {(a.first + b.first) / 2, (a.second + b.second) / 2};
 }
 
+/// Newton's step of α_1 towards ζ = 0; not finite where there is none.
+///
+/// Where s is a power, ±t^β, it is that of log(G_1/G_2) in log(α_1/α_2), which is nearly linear where techniques share little:
+/// G_1 = λ + α_2 ζ, G_2 = λ − α_1 ζ and λ' = (1 − β) ζ, up to the sign of s, so that no other sum is needed.
+PHIMIS_HOST_DEVICE inline double newton_step(const pair_fractions& alpha, const pair_sums& at) noexcept {
+  const double plain = at.zeta / at.slope;
+  const double beta = at.exponent;
+  if (beta == 0) return plain;
+  const double z = beta < 0 ? -at.zeta : at.zeta;
+  const double dz = beta < 0 ? at.slope : -at.slope;
+  const double g1 = at.lambda + alpha.second * z;
+  const double g2 = at.lambda - alpha.first * z;
+  const double tilt = (alpha.second * dz - beta * z) / g1 + (alpha.first * dz + beta * z) / g2;
+  const double rate = alpha.first * alpha.second * tilt;  // of log(G_1/G_2)
+  if (!(g1 > 0) || !(g2 > 0) || !(beta < 0 ? rate > 0 : rate < 0)) return plain;
+  const double grown = std::expm1(-std::log1p(z / g2) / rate);
+  const double step = alpha.first * alpha.second * grown / (1 + alpha.first * grown);
+  // Where both say that next to nothing is left of a fraction, its end is to be tried.
+  const double left = plain > 0 ? alpha.second : alpha.first;
+  const bool to_the_end = std::fabs(plain) >= left && left - std::fabs(step) <= 0.01 * left;
+  return is_finite(step) && !to_the_end ? step : plain;
+}
+
 }  // namespace detail
 
 /// Whether ζ falls everywhere, so that it has one root at most.
@@ -129,7 +152,7 @@ template <class Evaluate>
       break;
     }
 
-    const double step = at.zeta / at.slope;
+    const double step = detail::newton_step(alpha, at);
     const bool newton = finite && at.slope > 0 && is_finite(at.slope) && is_finite(step);
     if (newton && std::fabs(step) <= resolution) break;
     // Newton's step is taken while it halves and stays inside; otherwise an unseen end, then the middle.
@@ -141,7 +164,8 @@ template <class Evaluate>
       const double way = zeta > 0 ? detail::distance(alpha, high) : detail::distance(low, alpha);
       if (way <= 1e-3) {
         next = end;
-      } else if (!inside || std::fabs(step) > way / 8) {
+      } else if (!inside || std::fabs(step) > way / 8 || std::fabs(step) > last_step) {
+        // Steps that grow are those of a pole: Newton's method would leave it by a constant factor at a time.
         next = detail::shifted(alpha, zeta > 0 ? way / 8 : -way / 8);
       }
     } else if (!inside || std::fabs(step) > last_step / 2) {

@@ -120,7 +120,7 @@ class streaming_newton
     sums& of = this->memory();
     rule_counters<Real>& counters = this->state_.counters;
     ++counters.observations;
-    if (sample.f == 0) {
+    if (is_finite(sample.f) && sample.f == 0) {  // NaN == 0 under -ffast-math
       ++counters.zero;
       of.n += 1;
       return;

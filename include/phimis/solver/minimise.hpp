@@ -29,8 +29,7 @@ struct minimise_options {
   double prior = 0;           ///< weight of the start, in observations
   double tolerance = 0;       ///< of the residual, at which to stop; below it, as far as rounding lets it
   control_variate variate = control_variate::on;
-  /// Threads of the host, for more than two techniques and from 10⁵ observations on; none by default. The result is the same
-  /// to the last bit.
+  /// Threads of the host, from 10⁵ observations on; none by default. The result is the same to the last bit.
   parallel_for run{};
 };
 
@@ -93,13 +92,15 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
                    std::span(frozen.get(), count), options.prior);
   validate_costs<double>(divergence, std::span(costs.data(), count));
   require(is_density(options.tolerance), "tolerance", "must be finite and not negative", options.tolerance);
-  Eigen::VectorXd least = floors;  // of each fraction; a frozen one has no floor
-  for (Eigen::Index k = 0; k < m; ++k) {
-    if (frozen[static_cast<std::size_t>(k)]) least[k] = start[k];
-  }
-  const Eigen::VectorXd above = (start - least).cwiseMax(0);
-  if (above.sum() > 0 && (start - least).minCoeff() < 0) {
-    start = least + std::max(1 - least.sum(), 0.0) * above / above.sum();
+  if ((start - floors).minCoeff() < 0) {
+    Eigen::VectorXd least = floors;  // of each fraction; a frozen one has no floor
+    for (Eigen::Index k = 0; k < m; ++k) {
+      if (frozen[static_cast<std::size_t>(k)]) least[k] = start[k];
+    }
+    const Eigen::VectorXd above = (start - least).cwiseMax(0);
+    if (above.sum() > 0 && (start - least).minCoeff() < 0) {
+      start = least + std::max(1 - least.sum(), 0.0) * above / above.sum();
+    }
   }
   minimum result{.fractions = start, .counters = {}};
   const row_matrix rows(f, pdfs, q, detail::is_variance<Divergence>::value, options.run);
@@ -120,8 +121,8 @@ minimum minimise(const Divergence& divergence, const Eigen::Ref<const Eigen::Vec
                                     .prior = options.prior,
                                     .tolerance = options.tolerance,
                                     .variate = options.variate};
-  const row_minimum found = minimise_rows(divergence, rows.view(), rows.largest(), wanted, memory.data(),
-                                          indices.data(), result.fractions.data());
+  const row_minimum found = minimise_rows<0>(divergence, rows.view(), rows.largest(), wanted, memory.data(),
+                                             indices.data(), result.fractions.data());
   result.status = found.status;
   result.iterations = found.solution.iterations;
   result.evaluations = found.solution.evaluations;

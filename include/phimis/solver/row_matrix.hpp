@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <type_traits>
 #include <vector>
@@ -24,7 +25,9 @@ using parallel_for = std::function<void(int count, const std::function<void(int)
 /// Rows of observations that lie in matrices, in parts that may be read at the same time.
 ///
 ///     u_j = |f_j|,  w_j = 1/q_j,  y_kj = p_kj        where they lie; only w is new
-///     u_j = |f_j|/Σp,  w_j = Σp/q_j,  y_kj = p_kj/Σp  copied, where an observation is none, pdfs are beyond 1e±50, or a sign is lost
+///     u_j = |f_j|/Σp,  w_j = Σp/q_j,  y_kj = p_kj/Σp  copied
+///
+/// They are copied where an observation is none, a pdf is beyond 1e±50 or |f| beyond 1e200, or a sign would be lost.
 ///
 /// Both have the same f/p and p_k/q.
 ///
@@ -59,6 +62,7 @@ class row_matrix {
       largest_ = std::max(largest_, each.largest);
       counters_.merge(each.counters);
     }
+    columns_.reserve(static_cast<std::size_t>(m_));
     for (int k = 0; k < m_; ++k) columns_.push_back(plain ? pdfs_ + k * stride_ : y_.data() + k * n_);
     if (count > 1) found_.resize(static_cast<std::size_t>(count) * static_cast<std::size_t>(row_parts::doubles(m_)));
     core_parts_ = {count, found_.data(), row_parts::doubles(m_), this,
@@ -117,10 +121,13 @@ class row_matrix {
   using bits = std::conditional_t<std::is_same_v<V, double>, std::uint64_t, detail::pack<std::uint64_t>>;
   static constexpr std::uint64_t sign = std::uint64_t(1) << 63;
 
-  /// The highest bit is set where a value is not finite.
+  // Of numbers without a sign the bits are ordered as they are, and come after them where they are not finite; so checks
+  // are differences, whose highest bit is set where they fail, with -ffast-math, too.
   template <class V>
-  static bits<V> not_finite(const bits<V>& raw) {
-    return (raw & ~sign) + (std::uint64_t(1) << 52);
+  static bits<V> bits_of(double limit) {
+    std::uint64_t raw = 0;
+    std::memcpy(&raw, &limit, sizeof raw);
+    return bits<V>{} + raw;
   }
 
   /// So many rows, a pack at a time.
@@ -136,30 +143,30 @@ class row_matrix {
       const double* const p = pdfs_ + k * stride_ + from;
       for (index i = 0; i < Rows; i += width) {
         store<V>(sum + i, load<V>(sum + i) + load<V>(p + i));
-        bad |= load<B>(p + i) | not_finite<V>(load<B>(p + i));
+        bad |= load<B>(p + i);
       }
     }
     const B lost = B{} + (keeps_sign_ ? 0 : sign);
+    const B low = bits_of<V>(least);
+    const B high = bits_of<V>(most);
+    const B highest = bits_of<V>(most_of_f);
     V largest{};
     V zero{};
     for (index i = from; i < from + Rows; i += width) {
       const B f = load<B>(f_ + i);
       const B size_bits = f & ~sign;
-      bad |= not_finite<V>(f) | (f & lost) | not_finite<V>(load<B>(q_ + i));
+      const B q_bits = load<B>(q_ + i);
+      const B all_bits = load<B>(sum + (i - from));
       const V size = load<V>(&size_bits);
       const V q = load<V>(q_ + i);
-      const V all = load<V>(sum + (i - from));
       const V one = V{} + 1;
-      // Where f is 0 so may the pdfs be.
-      const V reached = size > 0 ? all : one;
-      const V inverse = 1 / q;
-      const V ratio = size / reached;
-      store<V>(w_.data() + i, inverse);
-      V fine = reached < q ? reached : q;
-      fine = fine > least ? one : -one;
-      fine = (all < most ? one : -one) < fine ? -one : fine;
-      fine = (q < most ? one : -one) < fine ? -one : fine;
-      bad |= load<B>(&fine);
+      const V reached = size > 0 ? load<V>(sum + (i - from)) : one;  // where f is 0 so may the pdfs be
+      bad |= (f & lost) | (highest - size_bits);
+      bad |= q_bits | (high - q_bits) | (q_bits - low);
+      bad |= all_bits | (high - all_bits) | (load<B>(&reached) - low);
+      const V inverse = 1 / (q * reached);  // one division for two quotients: both lie within 1e±50, or rows are copied
+      const V ratio = size * (q * inverse);
+      store<V>(w_.data() + i, reached * inverse);
       largest = ratio > largest ? ratio : largest;
       zero += size > 0 ? V{} : one;
     }
@@ -171,6 +178,7 @@ class row_matrix {
   }
   static constexpr double least = 1e-50;
   static constexpr double most = 1e50;
+  static constexpr double most_of_f = 1e200;
 
   void copy(int number) {
     part& of = parts_[static_cast<std::size_t>(number)];

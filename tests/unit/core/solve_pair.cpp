@@ -71,6 +71,41 @@ TEST_CASE("A root is found from any start, also from ends where the condition is
   }
 }
 
+namespace {
+
+/// Two techniques that share no point, by s = ±t^β, also below 0: log(G_1/G_2) is linear in log(α_1/α_2).
+struct disjoint {
+  double beta, c;
+  pair_sums operator()(const pair_fractions& alpha) const {
+    const double g1 = std::pow(alpha.first, -beta);
+    const double g2 = c * std::pow(alpha.second, -beta);
+    const double sign = beta < 0 ? -1 : 1;
+    return {sign * (g1 - g2), std::fabs(beta) * (g1 / alpha.first + g2 / alpha.second),
+            alpha.first * g1 + alpha.second * g2, beta};
+  }
+  pair_fractions root() const {
+    const double ratio = std::pow(c, -1 / beta);
+    return {ratio / (1 + ratio), 1 / (1 + ratio)};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Where the score is a power, techniques that share nothing are balanced in one step") {
+  for (const double beta : {0.5, 1.0, 2.0, 5.0, -0.5, -1.0}) {
+    for (const double decades : {-6.0, -1.5, -0.3, 0.0, 0.7, 1.5, 6.0}) {
+      const disjoint f{beta, std::pow(10, decades * beta)};
+      for (const double start : {0.5, 0.2, 0.9}) {
+        INFO("beta " << beta << ", decades " << decades << ", start " << start);
+        const auto found = phimis::solve_pair(f, zero, one, {start, 1 - start}, epsilon);
+        check_root(found, f.root(), 20 * (1 + 1 / std::fabs(beta)) * epsilon);
+        // The start, the root, and another where the root has rounding to lose; near an end that is tried first.
+        CHECK(found.evaluations <= (std::fabs(decades) < 2 ? 3 : 10));
+      }
+    }
+  }
+}
+
 TEST_CASE("A root near either end is precise in the small fraction") {
   for (const double small : {1e-6, 1e-12, 1e-100}) {
     // n = 1: a/b = 1/c.
