@@ -9,7 +9,7 @@ usage="usage: tests/coverage.sh [--no-build] [LEAST]
   --no-build  reports on what build/coverage has been run for
   --help      this
 
-Lines that are not run, with the reason, are in docs/decisions.md."
+Lines that are not run, with the reason, are in docs/robustness.md."
 
 least=
 build=yes
@@ -26,7 +26,7 @@ done
 cd "$(dirname "$0")/.." || exit 1
 sh cmake/install_packages.sh coverage || exit 1
 if [ -n "$build" ]; then
-  jobs=$(getconf _NPROCESSORS_ONLN)
+  jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(getconf _NPROCESSORS_ONLN)}
   cmake --preset coverage </dev/null || exit 1
   cmake --build --preset coverage --parallel "$jobs" </dev/null || exit 1
   find build/coverage -name '*.gcda' -exec rm -f {} +

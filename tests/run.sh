@@ -1,15 +1,15 @@
 #!/bin/sh
-# Runs the tests from a fresh clone: installs what is missing, runs the workflow of every preset with tests, a minute of
-# fuzzing, then the quick reproduction. The last line counts the tests of all.
+# Runs the tests from a fresh clone: installs what is missing, runs the workflow of every preset with tests, the hard cases
+# under -ffast-math, a minute of fuzzing, then the quick reproduction. The last line counts the tests of all.
 set -u
 
 usage="usage: tests/run.sh [--fast]
 
-  --fast   only the preset dev: g++, no sanitizers, no fuzzing, no reproduction
+  --fast   only the preset dev: g++, no sanitizers, no other flags, no fuzzing, no reproduction
   --help   this"
 
 presets="dev dev-clang sanitize"
-more="fuzz reproduction"
+more="flags fuzz reproduction"
 for option; do
   case $option in
     --fast) presets=dev more= ;;
@@ -59,6 +59,7 @@ for step in $more; do
   begin=$(date +%s)
   good=1
   case $step in
+    flags) sh tests/hard_flags.sh --quick </dev/null || good=0 ;;
     fuzz) sh tests/fuzz.sh 60 1 </dev/null || good=0 ;;  # what is new is searched for in longer runs
     reproduction) sh examples/reproduce.sh --quick </dev/null || good=0 ;;
   esac
