@@ -30,10 +30,10 @@ case ${folder:=$PWD/build/report} in
   *) folder=$here/$folder ;;
 esac
 case $effort in
-  --quick) error="--runs 400 --most 5000" iterations="--runs 20" update="--benchmark_min_time=0.01 --benchmark_filter=/(10|100|1000)$"
+  --quick) error="--runs 400 --most 5000" iterations="--runs 20" update="--benchmark_filter=/(2|16)/(10|100|1000)/"
            solver="--limit 0.1 --rows 1000" ;;
-  --full) error="--runs 40000" iterations="--runs 1000" update=--benchmark_min_time=0.2 solver="--limit 10 --rows 100000" ;;
-  *) error="--runs 2000" iterations="--runs 200" update=--benchmark_min_time=0.05 solver="--limit 0.5 --rows 10000" ;;
+  --full) error="--runs 40000" iterations="--runs 1000" update= solver="--limit 10 --rows 100000" ;;
+  *) error="--runs 2000" iterations="--runs 200" update= solver="--limit 0.5 --rows 10000" ;;
 esac
 
 programs="bench_update bench_solver bench_error bench_iterations"
@@ -46,18 +46,7 @@ built=build/release/bench
 
 echo "updates"
 # shellcheck disable=SC2086  # options
-$built/bench_update --benchmark_format=csv $update 2>/dev/null |
-  awk -F, '
-    BEGIN { print "rule,gamma,real,m,n,ns_per_observation,limit_ratio" }
-    $1 == "name" { for (i = 1; i <= NF; ++i) { gsub(/"/, "", $i); column[$i] = i } next }
-    NF > 5 {
-      gsub(/"/, "", $1); split($1, part, "/"); sub("gamma:", "", part[3])
-      of = part[2] "/" part[3] "/" part[4]
-      ns = $column["ns_per_row"]
-      # An evaluation is timed in turns with the limit, which then serves the updates of the same rows.
-      if (part[1] == "one_evaluation") limit[of] = ns / $column["ratio"]
-      printf "%s,%s,%s,2,%s,%.4g,%.4g\n", part[1], part[3], part[2], part[4], ns, ns / limit[of]
-    }' >"$folder/update.csv"
+sh bench/update_table.sh --csv $update >"$folder/update.csv"
 
 echo "optima"
 # shellcheck disable=SC2086
@@ -65,9 +54,9 @@ $built/bench_solver --csv "$folder/solver.csv" $solver >"$folder/optimum.md"
 awk -F, '
   BEGIN { print "method,gamma,m,n,kkt,seconds,ratio_to_ours" }
   FNR == 1 { next }
-  $4 == "gradient" { next }
-  $4 == "phimis" { ours[$1, $2, $3] = $5 }
-  { printf "%s,%s,%s,%s,%s,%s,%.4g\n", $4, $1, $3, $2, $6, $5, $5 / ours[$1, $2, $3] }' \
+  $5 == "gradient" { next }
+  $5 == "phimis" { ours[$1, $2, $3, $4] = $6 }
+  { printf "%s,%s,%s,%s,%s,%s,%.4g\n", $5 ($4 == "inside" ? "_inside" : ""), $1, $3, $2, $7, $6, $6 / ours[$1, $2, $3, $4] }' \
   "$folder/solver.csv" >"$folder/optimum.csv"
 
 echo "iterations"

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
 // How long does it take to find the best fractions of m techniques on n observations? Ours, the multiplicative step, and
-// NLopt's SLSQP where the library was found.
+// NLopt's SLSQP where the library was found; of two techniques also Boost.Math's and Eigen's root finders, where the optimum
+// lies inside.
 //
-//     bench_solver [--csv FILE] [--limit SECONDS] [--rows MOST]      a Markdown table on standard output
+//     bench_solver [--csv FILE] [--limit SECONDS] [--rows MOST]      two Markdown tables on standard output
 //
 // One residual for all, of the fractions that each returns: max_k G_k/λ − 1, the duality gap relative to λ. The peers
 // stop as soon as it is 1e-8; ours stops at its own tolerance, which is tighter. Peers evaluate objective and gradient in
 // one pass over blocks of rows that fit into the cache. Medians over problems, of repetitions in turn. The time of one such
 // evaluation is what no solver that looks at all observations can go below.
 
+#include "bumps.hpp"
+
 #include <phimis/solver/minimise.hpp>
 
 #include <Eigen/Core>
+#include <boost/math/tools/roots.hpp>
+#include <unsupported/Eigen/NonLinearOptimization>
 
 #ifdef PHIMIS_BENCH_NLOPT
 #include <nlopt.h>
@@ -21,11 +26,11 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,47 +42,6 @@ constexpr double enough = 1e-8;
 
 double seconds_since(clock_type::time_point start) {
   return std::chrono::duration<double>(clock_type::now() - start).count();
-}
-
-struct problem {
-  Eigen::VectorXd f;
-  Eigen::MatrixXd pdfs;
-  Eigen::VectorXd q;
-};
-
-/// m Gaussian bumps on [0, 1]; f is a mixture of a third of them times a smooth factor; x are drawn from the equal
-/// mixture.
-problem some_problem(int n, int m, unsigned seed) {
-  std::mt19937_64 engine(seed);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  std::normal_distribution<double> normal;
-  const auto size = static_cast<std::size_t>(m);
-  std::vector<double> centre(size), width(size), mass(size), share(size);
-  for (std::size_t k = 0; k < size; ++k) {
-    centre[k] = uniform(engine);
-    width[k] = 0.02 * std::pow(15, uniform(engine));
-    const double root = width[k] * std::sqrt(2.0);
-    mass[k] = (std::erf((1 - centre[k]) / root) + std::erf(centre[k] / root)) / 2;
-    share[k] = uniform(engine) < 1.0 / 3 ? uniform(engine) : 0;
-  }
-  share[static_cast<std::size_t>(engine() % size)] += 0.5;
-  const double phase = 6 * uniform(engine);
-  problem on{Eigen::VectorXd(n), Eigen::MatrixXd(n, m), Eigen::VectorXd(n)};
-  for (int j = 0; j < n; ++j) {
-    const auto from = static_cast<std::size_t>(engine() % size);
-    double x = -1;
-    while (x < 0 || x > 1) x = centre[from] + width[from] * normal(engine);
-    on.f[j] = 0;
-    for (std::size_t k = 0; k < size; ++k) {
-      const double z = (x - centre[k]) / width[k];
-      const double pdf = std::exp(-z * z / 2) / (2.5066282746310002 * width[k] * mass[k]);
-      on.pdfs(j, static_cast<int>(k)) = pdf;
-      on.f[j] += share[k] * pdf;
-    }
-    on.f[j] *= std::exp(0.5 * std::sin(9 * x + phase));
-  }
-  on.q = on.pdfs.rowwise().mean();
-  return on;
 }
 
 /// The objective of γ = 1, −Σ f/q log p, or of γ = 2, Σ f²/(p q), in a unit in which it and its gradient are near 1.
@@ -234,6 +198,86 @@ outcome slsqp(const problem& on, int gamma, double limit) {
 }
 #endif
 
+/// G_1 − G_2 of two techniques as a function of α_1, and its derivative, in one pass over blocks of rows.
+class condition {
+ public:
+  condition(const problem& on, int gamma) : on_(on), gamma_(gamma), weights_(on.f.cwiseQuotient(on.q)) {
+    if (gamma == 2) weights_ = weights_.cwiseProduct(on.f).eval();
+    weights_ /= weights_.sum();
+  }
+
+  std::pair<double, double> operator()(double alpha) {
+    double value = 0;
+    double slope = 0;
+    for (Eigen::Index j = 0; j < weights_.size(); j += rows_of_block) {
+      const Eigen::Index count = std::min<Eigen::Index>(rows_of_block, weights_.size() - j);
+      const auto first = on_.pdfs.col(0).segment(j, count).array();
+      const auto second = on_.pdfs.col(1).segment(j, count).array();
+      auto r = block_.head(count).array();
+      r = 1 / (alpha * first + (1 - alpha) * second);
+      auto s = scores_.head(count).array();
+      s = weights_.segment(j, count).array() * r;
+      if (gamma_ == 2) s *= r;
+      value += (s * (first - second)).sum();
+      slope -= gamma_ * (s * r * (first - second).square()).sum();
+    }
+    return {value, slope};
+  }
+
+ private:
+  static constexpr Eigen::Index rows_of_block = 256;
+  const problem& on_;
+  int gamma_;
+  Eigen::VectorXd weights_;
+  Eigen::VectorXd block_{rows_of_block};
+  Eigen::VectorXd scores_{rows_of_block};
+};
+
+/// 30 bits of α_1 leave a residual near the peers' 1e-8: it is quadratic in neither.
+constexpr int enough_bits = 30;
+
+outcome timed_root(const problem& on, int gamma, double (*root)(condition&)) {
+  const auto start = clock_type::now();
+  condition at(on, gamma);
+  const double alpha = root(at);
+  const double seconds = seconds_since(start);
+  objective check(on, gamma);
+  return {seconds, residual_of(check, Eigen::Vector2d(alpha, 1 - alpha)), true};
+}
+
+double boost_newton(condition& at) {
+  std::uintmax_t most = 200;
+  return boost::math::tools::newton_raphson_iterate([&](double alpha) { return at(alpha); }, 0.5, 0.0, 1.0, enough_bits, most);
+}
+
+double boost_toms748(condition& at) {
+  std::uintmax_t most = 200;
+  const auto bracket = boost::math::tools::toms748_solve([&](double alpha) { return at(alpha).first; }, 1e-9, 1 - 1e-9,
+                                                         boost::math::tools::eps_tolerance<double>(enough_bits), most);
+  return (bracket.first + bracket.second) / 2;
+}
+
+struct eigen_condition {
+  condition& at;
+  int operator()(const Eigen::VectorXd& alpha, Eigen::VectorXd& value) const {
+    value[0] = at(alpha[0]).first;
+    return 0;
+  }
+  int df(const Eigen::VectorXd& alpha, Eigen::MatrixXd& slope) const {
+    slope(0, 0) = at(alpha[0]).second;
+    return 0;
+  }
+};
+
+double eigen_hybrid(condition& at) {
+  eigen_condition functor{at};
+  Eigen::HybridNonLinearSolver<eigen_condition> solver(functor);
+  solver.parameters.xtol = std::ldexp(1.0, -enough_bits);
+  Eigen::VectorXd alpha = Eigen::VectorXd::Constant(1, 0.5);
+  solver.hybrj1(alpha);
+  return alpha[0];
+}
+
 /// One evaluation of what the peers evaluate.
 outcome gradient(const problem& on, int gamma) {
   objective at(on, gamma);
@@ -258,8 +302,18 @@ struct measured {
   double time() const { return median(seconds); }
 };
 
-enum solver { phimis_minimise, multiplicative_step, nlopt_slsqp, one_gradient, solvers };
-constexpr std::array<const char*, solvers> solver_names{"phimis", "multiplicative", "slsqp", "gradient"};
+enum solver {
+  phimis_minimise,
+  multiplicative_step,
+  nlopt_slsqp,
+  newton,
+  toms748,
+  hybrid,
+  one_gradient,
+  solvers
+};
+constexpr std::array<const char*, solvers> solver_names{"phimis",        "multiplicative", "slsqp",   "boost_newton",
+                                                        "boost_toms748", "eigen_hybrid",   "gradient"};
 
 outcome run(solver which, const problem& on, int gamma, double limit) {
   switch (which) {
@@ -271,6 +325,12 @@ outcome run(solver which, const problem& on, int gamma, double limit) {
     case nlopt_slsqp:
       return slsqp(on, gamma, limit);
 #endif
+    case newton:
+      return timed_root(on, gamma, boost_newton);
+    case toms748:
+      return timed_root(on, gamma, boost_toms748);
+    case hybrid:
+      return timed_root(on, gamma, eigen_hybrid);
     case one_gradient:
       return gradient(on, gamma);
     default:
@@ -278,20 +338,30 @@ outcome run(solver which, const problem& on, int gamma, double limit) {
   }
 }
 
+/// Whether no fraction is 0 where the divergence is least.
+bool is_inside(const problem& on, int gamma) {
+  condition at(on, gamma);
+  return at(1e-6).first > 0 && at(1 - 1e-6).first < 0;
+}
+
 /// Medians over problems of medians over repetitions, solvers in turn. What takes long is not repeated, and a solver that ran
 /// out of time solves no other problem of that size.
-std::array<measured, solvers> measure(int n, int m, int gamma, double limit) {
+std::array<measured, solvers> measure(int n, int m, int gamma, double limit, const std::vector<solver>& who, bool inside) {
   std::array<measured, solvers> all;
-  constexpr unsigned problems = 5;
-  for (unsigned seed = 1; seed <= problems; ++seed) {
+  const unsigned problems = n < 1000000 ? 5 : 3;
+  unsigned solved = 0;
+  for (unsigned seed = 1; solved < problems; ++seed) {
     const problem on = some_problem(n, m, seed);
+    if (inside && !is_inside(on, gamma)) continue;
+    ++solved;
     std::array<std::vector<double>, solvers> times;
     for (int i = 0; i < 9; ++i) {
-      for (std::size_t s = 0; s < solvers; ++s) {
+      for (const solver which : who) {
+        const auto s = static_cast<std::size_t>(which);
         auto& of = all[s];
         if (!of.seconds.empty() && of.seconds.back() >= limit) continue;
         if (i > 0 && (times[s].empty() || times[s].front() * (i + 1) > limit / 20)) continue;
-        const outcome result = run(static_cast<solver>(s), on, gamma, limit);
+        const outcome result = run(which, on, gamma, limit);
         if (!(result.seconds >= 0)) continue;
         times[s].push_back(result.in_time ? result.seconds : limit);
         of.residual = std::max(of.residual, result.residual);
@@ -309,7 +379,8 @@ std::string milliseconds(const measured& of, double limit) {
   char text[64];
   const double ms = 1e3 * of.time();
   std::snprintf(text, sizeof text, "%s%.*f (%.0e)", of.time() >= limit ? "> " : "",
-                ms < 1     ? 3
+                ms < 0.01  ? 4
+                : ms < 1   ? 3
                 : ms < 100 ? 1
                            : 0,
                 ms, of.residual);
@@ -324,11 +395,70 @@ std::string ratio(const measured& peer, const measured& own, double limit) {
   return text;
 }
 
+void write(std::FILE* csv, int gamma, int n, int m, const char* where, const std::array<measured, solvers>& all,
+           double limit) {
+  if (csv == nullptr) return;
+  for (std::size_t s = 0; s < solvers; ++s) {
+    if (all[s].seconds.empty()) continue;
+    std::fprintf(csv, "%d,%d,%d,%s,%s,%.4g,%.2g,%d\n", gamma, n, m, where, solver_names[s], all[s].time(),
+                 all[s].residual, all[s].time() < limit ? 1 : 0);
+  }
+}
+
+void compare_all(std::FILE* csv, double limit, int most_rows) {
+  std::puts(
+      "| γ | n | m | phimis, ms | multiplicative step, ms | × | SLSQP, ms | × | one gradient, ms "
+      "| phimis, gradients | SLSQP, gradients |");
+  std::puts("|---|---|---|---|---|---|---|---|---|---|---|");
+  for (const int gamma : {1, 2}) {
+    for (int n = 100; n <= most_rows; n *= 10) {
+      for (int m = 2; m <= 64; m *= 2) {
+        if (n >= 1000000 && (m == 4 || m > 16)) continue;  // gigabytes, and minutes for the peers
+        const auto all = measure(
+            n, m, gamma, limit,
+            {phimis_minimise, multiplicative_step, nlopt_slsqp, one_gradient}, false);
+        const auto& own = all[phimis_minimise];
+        const auto& unit = all[one_gradient];
+        std::printf("| %d | %d | %d | %s | %s | %s | %s | %s | %.3g | %s | %s |\n", gamma, n, m,
+                    milliseconds(own, limit).c_str(),
+                    milliseconds(all[multiplicative_step], limit).c_str(),
+                    ratio(all[multiplicative_step], own, limit).c_str(),
+                    milliseconds(all[nlopt_slsqp], limit).c_str(), ratio(all[nlopt_slsqp], own, limit).c_str(),
+                    1e3 * unit.time(), ratio(own, unit, limit).c_str(), ratio(all[nlopt_slsqp], unit, limit).c_str());
+        std::fflush(stdout);
+        write(csv, gamma, n, m, "anywhere", all, limit);
+      }
+    }
+  }
+}
+
+void compare_root_finders(std::FILE* csv, double limit, int most_rows) {
+  std::puts("");
+  std::puts(
+      "| γ | n | phimis, ms | Newton (Boost.Math), ms | × | TOMS 748 (Boost.Math), ms | × | hybrid (Eigen), ms | × "
+      "| SLSQP, ms | × |");
+  std::puts("|---|---|---|---|---|---|---|---|---|---|---|");
+  for (const int gamma : {1, 2}) {
+    for (int n = 100; n <= most_rows; n *= 100) {
+      const auto all =
+          measure(n, 2, gamma, limit, {phimis_minimise, newton, toms748, hybrid, nlopt_slsqp}, true);
+      const auto& own = all[phimis_minimise];
+      std::printf("| %d | %d | %s |", gamma, n, milliseconds(own, limit).c_str());
+      for (const solver peer : {newton, toms748, hybrid, nlopt_slsqp}) {
+        std::printf(" %s | %s |", milliseconds(all[peer], limit).c_str(), ratio(all[peer], own, limit).c_str());
+      }
+      std::puts("");
+      std::fflush(stdout);
+      write(csv, gamma, n, 2, "inside", all, limit);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  double limit = 10;
-  int most_rows = 100000;
+  double limit = 5;
+  int most_rows = 1000000;
   std::FILE* csv = nullptr;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string option = argv[i];
@@ -337,30 +467,8 @@ int main(int argc, char** argv) {
     if (option == "--rows") most_rows = std::atoi(argv[i + 1]);
     if (option == "--csv" && csv == nullptr) return std::perror(argv[i + 1]), 1;
   }
-  if (csv) std::fputs("gamma,n,m,solver,seconds,residual,in_time\n", csv);
-  std::puts(
-      "| γ | n | m | phimis, ms | multiplicative step, ms | × | SLSQP, ms | × | one gradient, ms | phimis, gradients "
-      "| SLSQP, gradients |");
-  std::puts("|---|---|---|---|---|---|---|---|---|---|---|");
-  for (const int gamma : {1, 2}) {
-    for (int n = 100; n <= most_rows; n *= 10) {
-      for (int m = 2; m <= 64; m *= 2) {
-        const auto all = measure(n, m, gamma, limit);
-        const auto& own = all[phimis_minimise];
-        const auto& unit = all[one_gradient];
-        std::printf("| %d | %d | %d | %s | %s | %s | %s | %s | %.3g | %s | %s |\n", gamma, n, m,
-                    milliseconds(own, limit).c_str(), milliseconds(all[multiplicative_step], limit).c_str(),
-                    ratio(all[multiplicative_step], own, limit).c_str(),
-                    milliseconds(all[nlopt_slsqp], limit).c_str(), ratio(all[nlopt_slsqp], own, limit).c_str(),
-                    1e3 * unit.time(), ratio(own, unit, limit).c_str(), ratio(all[nlopt_slsqp], unit, limit).c_str());
-        std::fflush(stdout);
-        for (std::size_t s = 0; csv && s < solvers; ++s) {
-          if (all[s].seconds.empty()) continue;
-          std::fprintf(csv, "%d,%d,%d,%s,%.4g,%.2g,%d\n", gamma, n, m, solver_names[s], all[s].time(),
-                       all[s].residual, all[s].time() < limit ? 1 : 0);
-        }
-      }
-    }
-  }
+  if (csv) std::fputs("gamma,n,m,optimum,solver,seconds,residual,in_time\n", csv);
+  compare_all(csv, limit, most_rows);
+  compare_root_finders(csv, limit, most_rows);
   if (csv) std::fclose(csv);
 }

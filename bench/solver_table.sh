@@ -1,6 +1,6 @@
 #!/bin/sh
-# The benchmark of solvers: a Markdown table on standard output, docs/figures/speed_solver.csv and the figure of it. Needs
-# the release preset and gnuplot; takes minutes, since peers are given ten seconds each.
+# The benchmark of solvers: Markdown tables on standard output, docs/figures/speed_solver.csv and the figure of it. Needs
+# the release preset and gnuplot; takes ten minutes, since peers are given five seconds each.
 set -eu
 cd "$(dirname "$0")/.."
 figure=docs/figures/speed_solver

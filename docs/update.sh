@@ -3,20 +3,24 @@
 # `<!-- output: COMMAND -->`, each up to the line `<!-- end -->`. Programs come from the release preset.
 set -eu
 
-usage="usage: docs/update.sh [--check]
+usage="usage: docs/update.sh [--check] [PAGE...]
 
+  PAGE      all by default, but docs/robustness.md: tests/robustness.sh fills that in
   --check   changes nothing and runs no program: fails where included code differs from its file
   --help    this"
 
 check=
+pages=
 for option; do
   case $option in
     --check) check=yes ;;
     --help) echo "$usage"; exit 0 ;;
-    *) echo "docs/update.sh: unknown option '$option'; --help lists them" >&2; exit 2 ;;
+    -*) echo "docs/update.sh: unknown option '$option'; --help lists them" >&2; exit 2 ;;
+    *) pages="$pages $option" ;;
   esac
 done
 cd "$(dirname "$0")/.."
+[ -n "$pages" ] || pages="README.md docs/policies.md docs/embedding.md docs/direct_lighting.md docs/environment_lighting.md docs/speed.md"
 
 fill() {
   while IFS= read -r line; do
@@ -42,8 +46,7 @@ fill() {
 }
 
 status=0
-for page in README.md docs/policies.md docs/embedding.md docs/direct_lighting.md docs/environment_lighting.md docs/speed.md; do
-  [ -f "$page" ] || continue
+for page in $pages; do
   filled=$(mktemp)
   fill "$page" >"$filled"
   if cmp -s "$filled" "$page"; then
