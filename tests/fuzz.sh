@@ -4,8 +4,10 @@
 set -u
 
 usage="usage: tests/fuzz.sh [SECONDS [SEED]]
+       tests/fuzz.sh --runs RUNS [SEED]
 
   SECONDS   of all fuzzers together, 60 by default; at least one for each
+  RUNS      executions of each fuzzer, from the seeds alone: with a seed the same ones on any machine
   SEED      of what is tried; another one each time by default
   --help    this
 
@@ -14,7 +16,13 @@ What a fuzzer finds is kept in build/fuzz/findings. In numbers, to be made a tes
   PHIMIS_FUZZ_TELL=1 build/fuzz/tests/fuzz/fuzz_NAME build/fuzz/findings/NAME-crash-..."
 
 [ "${1-}" != --help ] || { echo "$usage"; exit 0; }
-[ $# -le 2 ] || { echo "tests/fuzz.sh: seconds and a seed, not $*" >&2; exit 2; }
+runs=
+if [ "${1-}" = --runs ]; then
+  [ $# -ge 2 ] || { echo "tests/fuzz.sh: --runs wants a number; --help tells more" >&2; exit 2; }
+  runs=$2
+  shift
+fi
+[ $# -le 2 ] || { echo "tests/fuzz.sh: a number and a seed, not $*; --help tells more" >&2; exit 2; }
 for number; do
   case $number in
     *[!0-9]* | '' | 0*) echo "tests/fuzz.sh: '$number' is no number from 1 on; --help tells more" >&2; exit 2 ;;
@@ -47,11 +55,19 @@ mkdir -p "$findings"
 total=0
 failed=
 for name; do
+  begin=$(date +%s)
   grown=build/fuzz/corpus/$name
+  if [ -n "$runs" ]; then
+    limit=-runs=$runs
+    grown=build/fuzz/corpus_of_runs/$name
+    rm -rf "$grown"
+  else
+    limit=-max_total_time=$share
+  fi
   log=build/fuzz/$name.log
   mkdir -p "$grown"
   # A unit that takes 20 seconds is a finding. Long inputs say little that short ones do not.
-  if "build/fuzz/tests/fuzz/fuzz_$name" -seed="$seed" -max_total_time="$share" -timeout=20 -max_len=600 -print_final_stats=1 \
+  if "build/fuzz/tests/fuzz/fuzz_$name" -seed="$seed" "$limit" -timeout=20 -max_len=600 -print_final_stats=1 \
     -artifact_prefix="$findings/$name-" "$grown" "tests/fuzz/corpus/$name" </dev/null >"$log" 2>&1; then
     result=clean
   else
@@ -62,7 +78,7 @@ for name; do
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   : "${executions:=0}"
   total=$((total + executions))
-  echo "$name: $executions executions in $share s, $result"
+  echo "$name: $executions executions in $(($(date +%s) - begin)) s, $result"
 done
 
 if [ -n "$failed" ]; then

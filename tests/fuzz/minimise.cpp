@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -108,8 +110,17 @@ void solve(const Divergence& divergence, byte_source& bytes) {
     for (Eigen::Index k = 0; k < m; ++k) {
       if (!frozen[static_cast<std::size_t>(k)] && start[k] < floors[k]) return;
     }
-    const invariants::objective<Divergence, double> on(divergence, table_of_rows(f, pdfs, q).rows(), span(start),
-                                                       span(costs), options.prior, options.variate);
+    // Rows divide f by Σp: of a subnormal one nothing may be left where rows that lie in place still have it.
+    if (std::any_of(f.begin(), f.end(), [](double v) { return v != 0 && !std::isnormal(v); })) return;
+    const invariants::rows rows = table_of_rows(f, pdfs, q).rows();
+    // A technique without density in the table has given up its fraction, which no term of the objective knows.
+    for (Eigen::Index k = 0; k < m; ++k) {
+      const auto& y = rows.y[static_cast<std::size_t>(k)];
+      const bool silent = std::all_of(y.begin(), y.end(), [](auto share) { return !(share > 0); });
+      if (silent && !frozen[static_cast<std::size_t>(k)] && start[k] > floors[k]) return;
+    }
+    const invariants::objective<Divergence, double> on(divergence, rows, span(start), span(costs), options.prior,
+                                                       options.variate);
     demand(invariants::above_start<double>(on, span(found.fractions), span(start), found.gap));
   }
 }

@@ -388,3 +388,17 @@ TEST_CASE("Of f so small that its mean has no inverse, fractions stay, and the s
   CHECK(three.update() == rule_status::not_converged);
   CHECK(three.fractions()[0] == Approx(1.0 / 3));
 }
+
+TEST_CASE("Where one sample weighs 1e281 proportional pdfs stay under a prior: no power of f/p overflows") {
+  for (const double q : {3e-282, 1e-200, 1e-100, 1.0, 1e100}) {
+    for (const double gamma : {0.5, 2.0, 3.0}) {
+      rule_options<double, 2> options{.start = {{0.5, 0.5}}, .floors = {}};
+      options.prior = 1.0 / 64;
+      phimis::exact_minimiser<phimis::tsallis, phimis::fixed_table<double, 2, 4>> rule({gamma}, options);
+      rule.observe({1, {{1.4375, 0.09375}}, q, 0});
+      CAPTURE(q, gamma);
+      CHECK(rule.update() == rule_status::updated);
+      CHECK(std::fabs(rule.fractions()[0] - 0.5) < 1e-13);
+    }
+  }
+}

@@ -48,6 +48,11 @@ class pair_minimisation {
     if (detail::needs_mean(divergence)) {
       unit_ /= mean_;
       mean_ = 1;
+    } else {
+      // Powers take f in any unit: one in which scaled pdfs are no smaller than f.
+      const double smallest_kappa = kappa_[0] < kappa_[1] ? kappa_[0] : kappa_[1];
+      unit_ *= smallest_kappa;
+      mean_ *= smallest_kappa;
     }
   }
 
@@ -136,7 +141,9 @@ class pair_minimisation {
 
   /// Of a technique with the share π of the start, at the share α; s(0) where the start has none.
   PHIMIS_HOST_DEVICE score<double> prior_score(double pi, double alpha) const noexcept {
-    const double t = mean_ * pi / alpha;
+    const double ratio = mean_ * pi / alpha;
+    constexpr double largest = 1e308;
+    const double t = alpha > 0 && ratio > largest ? largest : ratio;  // a fraction may be subnormal
     if constexpr (local) {
       return pi > 0 ? score_at(chi_squared{}, t) : score<double>{0, 0};
     } else {

@@ -62,7 +62,8 @@ inline Eigen::VectorXd or_default(const Eigen::VectorXd& given, Eigen::Index m, 
 ///
 ///     auto best = phimis::minimise(phimis::kullback_leibler{}, f, pdfs, q);
 ///
-/// The rules' `exact_minimiser` for data that lie in matrices and for a number of techniques that is known when it runs.
+/// The rules' `exact_minimiser` for data that lie in matrices and for a number of techniques that is known when it runs. A
+/// technique without density at any observation gets its floor: no term has its fraction.
 ///
 /// Shapes   f[n], pdfs[n × m], q[n]: the density that each observation was drawn from.
 /// Errors   std::invalid_argument for wrong shapes and options out of range. Observations that are not finite are
