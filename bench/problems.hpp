@@ -19,7 +19,8 @@
 #include <numbers>
 #include <vector>
 
-/// The problems on which estimates are compared: those of the papers, one in two dimensions, one in five.
+/// The problems on which estimates are compared: those of the papers, one in two dimensions, one in five, and one that
+/// is made to ruin control variates.
 namespace bench {
 
 /// An integrand and techniques, with what is known of them exactly.
@@ -281,6 +282,41 @@ struct ball {
   }
 };
 
+/// Two densities that differ by 1 %, and by a lobe of a thousandth of the domain that few samples meet.
+///
+///     p_1 = 1,   p_2 = .99 (1 + .01 (2x − 1)) + .01 · 1000 on [.5, .501],   f = x² + .2 sin 20x
+namespace lobe {
+inline double f(double x) { return x * x + 0.2 * std::sin(20 * x); }
+struct uniform {
+  double pdf(double x) const { return x >= 0 && x <= 1 ? 1 : 0; }
+  template <class Next>
+  double sample(Next&& next) const {
+    return next();
+  }
+};
+struct lobed {
+  static constexpr double share = 0.01, tilt = 0.01, lower = 0.5, width = 1e-3;
+  double pdf(double x) const {
+    if (!(x >= 0 && x <= 1)) return 0;
+    return (1 - share) * (1 + tilt * (2 * x - 1)) + (x >= lower && x < lower + width ? share / width : 0);
+  }
+  template <class Next>
+  double sample(Next&& next) const {
+    if (next() < share) return lower + width * next();
+    const double b = 1 - tilt;  // tilt x² + b x = u
+    return (std::sqrt(b * b + 4 * tilt * next()) - b) / (2 * tilt);
+  }
+};
+}  // namespace lobe
+
+inline problem<2> hidden_lobe() {
+  const any_techniques<2> techniques(any_technique(lobe::uniform{}), any_technique(lobe::lobed{}));
+  return detail::with_exact<2>(
+      {"lobe", 1, [](const point& x) { return lobe::f(x[0]); }, techniques, {0}, {1}, 0, {}, {}, 0},
+      {lobe::f, phimis::technique_set(lobe::uniform{}, lobe::lobed{}), phimis::interval(0, 1),
+       {lobe::lobed::lower, lobe::lobed::lower + lobe::lobed::width}});
+}
+
 inline problem<4> two_dimensions() { return plane::exact(); }
 inline problem<3> five_dimensions() { return ball::exact(); }
 
@@ -298,6 +334,7 @@ void for_each_problem(const Receiver& receive) {
   receive(variance_4());
   receive(two_dimensions());
   receive(five_dimensions());
+  receive(hidden_lobe());
 }
 
 }  // namespace bench

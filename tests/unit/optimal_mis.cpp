@@ -85,14 +85,20 @@ TEST_CASE(
     phimis::draw_batch(f, techniques, phimis::equal_fractions<double, 2>(), {100}, phimis::balance{}, next,
                        [&](const auto& s) { streamed.add(s.observed.technique, s.value, s.observed.pdfs); });
   }
-  const auto pooled =
-      phimis::integrate(f, techniques, {.growth = 1, .seed = 1}, phimis::fixed_rule<2>(), phimis::pooled_control_variates{});
+  const phimis::integrate_options options{.growth = 1, .seed = 1};
+  const auto shrunk =
+      phimis::integrate(f, techniques, options, phimis::fixed_rule<2>(), phimis::pooled_control_variates{});
+  const auto pooled = phimis::integrate(f, techniques, options, phimis::fixed_rule<2>(),
+                                        phimis::pooled_control_variates{phimis::shrinkage::off});
   CHECK(streamed.samples() == pooled.samples);
-  // But for the shrinkage of the pool, which is that of one sample among 500.
-  CHECK(std::fabs(streamed.estimate() - pooled.estimate) < 0.01 * pooled.standard_error);
-  CHECK(streamed.coefficients().beta[0] == Approx(pooled.control.beta[0]).epsilon(0.01));
+  CHECK(streamed.estimate() == Approx(pooled.estimate).epsilon(1e-12));
+  for (int k = 0; k < 2; ++k) CHECK(streamed.coefficients().beta[k] == Approx(pooled.control.beta[k]).epsilon(1e-12));
   // The spread of all residuals, and that within each technique: equal up to the mean residual of a technique.
   CHECK(streamed.standard_error(sampling_model::multi_sample) == Approx(pooled.standard_error).epsilon(0.01));
+  // Shrinkage is that of one sample among 500.
+  CHECK(std::fabs(streamed.estimate() - shrunk.estimate) < 0.01 * shrunk.standard_error);
+  CHECK(streamed.coefficients().beta[0] == Approx(shrunk.control.beta[0]).epsilon(0.01));
+  CHECK(streamed.coefficients().beta[0] != shrunk.control.beta[0]);
 }
 
 TEST_CASE("The standard error of the direct form counts its coefficients") {

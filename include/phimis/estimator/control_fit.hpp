@@ -26,9 +26,9 @@ enum class shrinkage { on, off };
 /// joint optimisation (`joint_minimiser`). Since Σ α_k p_k/p(α) = 1 a regression needs no constant.
 ///
 /// - A technique with α_k = 0 is left out: where only it has density no sample would subtract its pdf.
-/// - What few samples say of one technique against the others may be noise over almost nothing. With shrinkage β = c α + δ, and
-///   δ is drawn to 0 by up to one sample a technique: by the share of the spread of f/p(α) that the regression leaves.
-///   Where pdfs span f, that is nothing.
+/// - Where samples hardly tell pdfs apart, a narrow lobe that none of them met may: a large δ_k would then ruin what meets it.
+///   With shrinkage β = c α + δ, and δ is drawn to 0 by up to one sample a technique: by the share of the spread of f/p(α) that
+///   the regression leaves. Where pdfs span f, that is nothing.
 /// - With fewer than `least` = 4M samples β is 0, as too noisy to help; and for good after a lost sample (f = 0 where every
 ///   pdf is 0), which shows that pdfs are defective.
 ///

@@ -30,14 +30,15 @@ class controlled_estimate;
 ///
 ///     F = Σ_k β_k + (1/n) Σ_j (f_j − Σ_k β_k p_kj)/p(ᾱ, x_j),   β the regression of f/p(ᾱ) on p_k/p(ᾱ)
 ///
-/// At fractions that stay this is the direct estimator of Optimal MIS. **Consistent, not unbiased**, of order 1/n:
-/// docs/policies.md has figures. Goes with the balance heuristic. Requires pdfs that integrate to one; off, and `pooled`,
-/// with fewer than 4M samples and after a lost sample.
+/// At fractions that stay, and without shrinkage, this is the direct estimator of Optimal MIS. **Consistent, not unbiased**,
+/// of order 1/n: docs/policies.md has figures. Goes with the balance heuristic. Requires pdfs that integrate to one; off, and
+/// `pooled`, with fewer than 4M samples and after a lost sample.
 ///
 /// Source   Owen & Zhou 2000; Kondapaneni et al. 2019.
 struct pooled_control_variates {
   template <class Value, int M>
   using run = detail::pooled_controlled_estimate<Value, M>;
+  shrinkage shrink = shrinkage::on;  ///< off: less error where pdfs are close, ruin where no sample met what sets them apart
 };
 
 /// Every iteration with the pdfs as control variates, fitted to the samples of earlier iterations: the progressive
@@ -94,7 +95,7 @@ constexpr void balance_only() {
 template <class Value, int M>
 class pooled_controlled_estimate {
  public:
-  pooled_controlled_estimate(const pooled_control_variates&, sampling_model) {}
+  pooled_controlled_estimate(const pooled_control_variates& policy, sampling_model) : shrink_(policy.shrink) {}
 
   void add(const drawn_sample<Value, M>& sample) { pool_.add(sample); }
   estimator<Value, M> close(const batch<Value, M>& drawn) {
@@ -107,7 +108,7 @@ class pooled_controlled_estimate {
     const fractions<double, M> alpha = pool_.aggregate();
     control_fit<Value, M> fit(alpha);
     for (const auto& s : pool_.all()) fit.add(s.value, s.observed.pdfs, mixture(alpha, s.observed.pdfs));
-    control_ = fit.solve();
+    control_ = fit.solve(shrink_);
     estimator<Value, M> all;
     for (const auto& s : pool_.all()) add_controlled(all, s, control_, alpha);
     return {all.estimate(), fitted_standard_error(all, pool_.model(), control_.rank),
@@ -117,6 +118,7 @@ class pooled_controlled_estimate {
   const control_coefficients<Value, M>& control() const { return control_; }
 
  private:
+  shrinkage shrink_;
   sample_pool<Value, M> pool_{};
   control_coefficients<Value, M> control_{};
 };

@@ -40,7 +40,7 @@ enum class optimal_form {
 ///     progressive:  F = (1/N) Σ_j [Σ_k β_k + (f_j − Σ_k β_k p_kj)/q_j], β of the samples before the last `update`
 ///
 /// q = p(α). These are the control variates of `control_fit` at α, and what `integrate` does with `pooled_control_variates`
-/// (but for its shrinkage) and `progressive_control_variates` where fractions stay. Samples with f = 0 enter A.
+/// without shrinkage and `progressive_control_variates` where fractions stay. Samples with f = 0 enter A.
 ///
 /// - Kondapaneni et al. sum A and b; here their QR decomposition is kept, with the digits that A would square away.
 /// - The coefficients of the progressive form are shrunk, since other samples have to bear their noise.
