@@ -116,7 +116,8 @@ std::vector<method<M>> methods() {
   add("default, cross_fitted_control_variates", kind::chosen, cross_fitted_control_variates{});
   add("joint, cross_fitted_control_variates", kind::chosen, joint_rule<M>(), cross_fitted_control_variates{});
   add("joint, pooled_control_variates", kind::chosen, joint_rule<M>(), pooled_control_variates{});
-  add("joint, pooled_control_variates, no shrinkage", kind::chosen, joint_rule<M>(), pooled_control_variates{shrinkage::off});
+  add("joint, pooled_control_variates, no shrinkage", kind::chosen, joint_rule<M>(),
+      pooled_control_variates{shrinkage::off});
 
   all.push_back({"equal counts", kind::peer, [](const problem<M>& on, std::int64_t budget, std::uint64_t seed) {
                    return at_fractions(on, equal_fractions<double, M>(), budget, seed);

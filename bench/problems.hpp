@@ -313,7 +313,9 @@ inline problem<2> hidden_lobe() {
   const any_techniques<2> techniques(any_technique(lobe::uniform{}), any_technique(lobe::lobed{}));
   return detail::with_exact<2>(
       {"lobe", 1, [](const point& x) { return lobe::f(x[0]); }, techniques, {0}, {1}, 0, {}, {}, 0},
-      {lobe::f, phimis::technique_set(lobe::uniform{}, lobe::lobed{}), phimis::interval(0, 1),
+      {lobe::f,
+       phimis::technique_set(lobe::uniform{}, lobe::lobed{}),
+       phimis::interval(0, 1),
        {lobe::lobed::lower, lobe::lobed::lower + lobe::lobed::width}});
 }
 

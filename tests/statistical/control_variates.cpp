@@ -232,8 +232,8 @@ TEST_CASE("Learnt fractions with control variates are at least as good as the be
 
 TEST_CASE("A lobe that no sample met does not ruin what control variates gain elsewhere") {
   // V[F] of equal counts is .0986 here, and control variates have nothing to gain: what they lose is bounded.
-  const double plain = phimis::analysis::variance(hidden_lobe::exact(), phimis::equal_fractions<double, 2>())
-                           .multi_sample.value;
+  const double plain =
+      phimis::analysis::variance(hidden_lobe::exact(), phimis::equal_fractions<double, 2>()).multi_sample.value;
   for (const std::int64_t budget : {50, 500}) {
     const integrate_options options{.budget = budget};
     const auto joint = phimis::joint_rule<2>();

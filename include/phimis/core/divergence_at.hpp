@@ -83,6 +83,17 @@ PHIMIS_HOST_DEVICE double score_at_zero(const Divergence& divergence) noexcept {
   }
 }
 
+/// s of a prior at the share a of a technique that has the share π of the start: one sample of f = mean where only that
+/// technique has density. s(0) where π is 0.
+template <class Divergence>
+PHIMIS_HOST_DEVICE score<double> prior_score(const Divergence& divergence, double mean, double pi,
+                                             double a) noexcept {
+  if (!(pi > 0)) return {score_at_zero(divergence), 0};
+  const double t = mean * pi / a;
+  constexpr double largest = 1e308;
+  return score_at(divergence, a > 0 && t > largest ? largest : t);  // a fraction may be subnormal
+}
+
 /// φ(t) of a divergence at t = g/p(α) ≥ 0; the divergence is ∫ p φ(g/p) dx.
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE Real phi_at(const Divergence& divergence, Real t) noexcept {

@@ -129,26 +129,21 @@ class pair_minimisation {
     if (rows_.n < 128) sums.exponent = 0;  // another evaluation costs less than logarithms
     const double weight = static_cast<double>(wanted_.prior) / every;
     if (weight > 0) {
-      const auto s1 = prior_score(prior_.first, at.first);
-      const auto s2 = prior_score(prior_.second, at.second);
+      const auto score_of = [&](double pi, double share) {
+        if constexpr (local) {
+          return prior_score(chi_squared{}, mean_, pi, share);
+        } else {
+          return prior_score(divergence_, mean_, pi, share);
+        }
+      };
+      const auto s1 = score_of(prior_.first, at.first);
+      const auto s2 = score_of(prior_.second, at.second);
       sums.zeta += weight * (s1.value - s2.value);
       if (s1.slope > 0) sums.slope += weight * s1.slope / at.first;
       if (s2.slope > 0) sums.slope += weight * s2.slope / at.second;
       sums.lambda += weight * (at.first * std::fabs(s1.value) + at.second * std::fabs(s2.value));
     }
     return sums;
-  }
-
-  /// Of a technique with the share π of the start, at the share α; s(0) where the start has none.
-  PHIMIS_HOST_DEVICE score<double> prior_score(double pi, double alpha) const noexcept {
-    const double ratio = mean_ * pi / alpha;
-    constexpr double largest = 1e308;
-    const double t = alpha > 0 && ratio > largest ? largest : ratio;  // a fraction may be subnormal
-    if constexpr (local) {
-      return pi > 0 ? score_at(chi_squared{}, t) : score<double>{0, 0};
-    } else {
-      return pi > 0 ? score_at(divergence_, t) : score<double>{score_at_zero(divergence_), 0};
-    }
   }
 
   PHIMIS_HOST_DEVICE pair_fractions to_solver(double first, double second) const noexcept {

@@ -6,7 +6,6 @@
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/divergence_at.hpp>
 #include <phimis/core/finite.hpp>
-#include <phimis/core/limits.hpp>
 #include <phimis/core/mixture_sums.hpp>
 #include <phimis/core/row_parts.hpp>
 
@@ -180,7 +179,7 @@ class divergence_on_simplex {
     const double weight = prior_ / every_;
     for (int k = 0; k < rows_.m && weight > 0; ++k) {
       const double a = on_.beta()[k] / kappa_[k];
-      const score<double> s = prior_score(k, a);
+      const score<double> s = prior_score(divergence_, mean_, shares_[k], a);
       if (!(a > 0) && !(shares_[k] > 0)) continue;
       raw_[k] += weight * s.value / kappa_[k];
       raw_sizes_[k] += weight * std::fabs(s.value) / kappa_[k];
@@ -219,15 +218,6 @@ class divergence_on_simplex {
   }
 
  private:
-  PHIMIS_HOST_DEVICE score<double> prior_score(int k, double a) const noexcept {
-    if (shares_[k] > 0) {
-      const double t = mean_ * shares_[k] / a;
-      constexpr double largest = 1e308;
-      return score_at(divergence_, a > 0 && t > largest ? largest : t);  // a floor may be subnormal
-    }
-    return {score_at_zero(divergence_), 0};
-  }
-
   PHIMIS_HOST_DEVICE void add_prior(int size) noexcept {
     if (!(prior_ > 0)) return;
     const double* const fixed = on_.fixed();
@@ -235,7 +225,8 @@ class divergence_on_simplex {
     for (int k = 0; k < rows_.m; ++k) {
       const double a = on_.beta()[k] / kappa_[k];
       if (!(a > 0)) continue;
-      const double curvature = prior_ / every_ * prior_score(k, a).slope / a / (kappa_[k] * kappa_[k]);
+      const double curvature =
+          prior_ / every_ * prior_score(divergence_, mean_, shares_[k], a).slope / a / (kappa_[k] * kappa_[k]);
       int at = -1;
       for (int i = 0; i < size; ++i) {
         if (techniques_[i] == k) at = i;
