@@ -40,9 +40,10 @@ TEXT
 page verdict
 cat <<TEXT
 
-Shrinkage is a choice between V2 and the lobe. On V2, whose pdfs are nearly a plane of functions, a third of the error hangs on
-coefficients that the samples leave almost open; on the lobe, too, and there they are wrong: Optimal MIS, which trusts them, has many times
-the error of equal counts. \`pooled_control_variates{shrinkage::off}\` trusts them; no other combination does.
+Shrinkage is a choice between V2 and the lobe. V2's three pdfs are linearly dependent but for a part in ten thousand, and a third of the
+error hangs on coefficients that the samples leave almost open; on the lobe, too, and there they are wrong: Optimal MIS, which trusts
+them, has many times the error of equal counts. \`pooled_control_variates{shrinkage::off}\` trusts them; no other combination does.
+On the lobe, as on V4, equal counts are as good as the best: there is nothing to learn.
 
 Peers without fractions to learn win, too: Optimal MIS, which has control variates, wherever its column is below the default's, which has
 none; and VEGAS wherever the tables below say so, in one dimension by orders of magnitude from 500 samples on.

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs the tests from a fresh clone: installs what is missing, runs the workflow of every preset with tests, the hard cases
-# under -ffast-math, some fuzzing, then the quick reproduction. The last line counts the tests of all.
+# under -ffast-math, a minute of fuzzing, then the quick reproduction. The last line counts the tests of all.
 set -u
 
 usage="usage: tests/run.sh [--fast]
@@ -60,7 +60,7 @@ for step in $more; do
   good=1
   case $step in
     flags) sh tests/hard_flags.sh --quick </dev/null || good=0 ;;
-    fuzz) sh tests/fuzz.sh --runs 6000 1 </dev/null || good=0 ;;  # what is new is searched for in longer runs
+    fuzz) sh tests/fuzz.sh --runs 10000 1 </dev/null || good=0 ;;  # what is new is searched for in longer runs
     reproduction) sh examples/reproduce.sh --quick </dev/null || good=0 ;;
   esac
   passed=$((passed + good))
