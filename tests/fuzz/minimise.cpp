@@ -114,11 +114,17 @@ void solve(const Divergence& divergence, byte_source& bytes) {
     if (std::any_of(f.begin(), f.end(), [](double v) { return v != 0 && !std::isnormal(v); })) return;
     const invariants::rows rows = table_of_rows(f, pdfs, q).rows();
     // A technique without density in the table has given up its fraction, which no term of the objective knows.
+    bool given_up = false;
     for (Eigen::Index k = 0; k < m; ++k) {
       const auto& y = rows.y[static_cast<std::size_t>(k)];
       const bool silent = std::all_of(y.begin(), y.end(), [](auto share) { return !(share > 0); });
-      if (silent && !frozen[static_cast<std::size_t>(k)] && start[k] > floors[k]) return;
+      if (!silent || frozen[static_cast<std::size_t>(k)] || (options.prior > 0 && start[k] > 0)) continue;
+      given_up = true;
+      if (found.fractions[k] != floors[k]) {
+        demand(invariants::words("silent technique ", k, " has ", found.fractions[k], " for its floor ", floors[k]));
+      }
     }
+    if (given_up) return;
     const invariants::objective<Divergence, double> on(divergence, rows, span(start), span(costs), options.prior,
                                                        options.variate);
     demand(invariants::above_start<double>(on, span(found.fractions), span(start), found.gap));

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <type_traits>
 
 namespace {
 
@@ -387,6 +388,29 @@ TEST_CASE("Of f so small that its mean has no inverse, fractions stay, and the s
   three.observe({2.5e-321, {{0.015625, 1, 1}}, 0.015625, 1});
   CHECK(three.update() == rule_status::not_converged);
   CHECK(three.fractions()[0] == Approx(1.0 / 3));
+}
+
+TEST_CASE("Where the unit of f is no number of the table, fractions stay, and the status says so") {
+  if (subnormals_are_zero()) return;
+  const auto check = [](auto rule) {
+    for (int j = 0; j < 300; ++j) {
+      const float x = (static_cast<float>(j) + 0.5f) / 300;
+      const float z = (x - 0.77f) / 0.003f;
+      observation<float, decltype(rule)::techniques> sample{2e-37f * (std::exp(-z * z) + 1e-4f), {}, 1, 0};
+      for (int k = 0; k < decltype(rule)::techniques; ++k) sample.pdfs[k] = k == 0 ? 2 * x : k == 1 ? 2 - 2 * x : 1;
+      rule.observe(sample);
+    }
+    const auto before = rule.fractions();
+    CHECK(rule.update() == rule_status::not_converged);
+    for (int k = 0; k < decltype(rule)::techniques; ++k) CHECK(rule.fractions()[k] == before[k]);
+  };
+  const auto with = [&](const auto& divergence) {
+    using divergence_type = std::decay_t<decltype(divergence)>;
+    check(phimis::exact_minimiser<divergence_type, phimis::fixed_table<float, 2, 300>>(divergence));
+    check(phimis::exact_minimiser<divergence_type, phimis::fixed_table<float, 3, 300>>(divergence));
+  };
+  with(phimis::total_variation{});
+  with(phimis::pearson_vajda{3});
 }
 
 TEST_CASE("Where one sample weighs 1e281 proportional pdfs stay under a prior: no power of f/p overflows") {

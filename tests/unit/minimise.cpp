@@ -16,6 +16,8 @@
 #include <numeric>
 #include <string>
 #include <thread>
+#include <type_traits>
+#include <typeinfo>
 #include <vector>
 
 namespace {
@@ -441,4 +443,113 @@ TEST_CASE("A tolerance is reached, and saves evaluations") {
   CHECK(near.evaluations < exact.evaluations);
   coarse.tolerance = -1;
   refuses(coarse, "tolerance", "must be finite and not negative", "-1");
+}
+
+namespace {
+
+/// 300 rows on [0, 1] of 2x, 2 − 2x and columns of zeros, f = 1 + x².
+struct silent_problem {
+  VectorXd f = VectorXd(300), q = VectorXd::Ones(300);
+  MatrixXd pdfs;
+
+  silent_problem(bool falling, int zeros) : pdfs(MatrixXd::Zero(300, 1 + (falling ? 1 : 0) + zeros)) {
+    for (Eigen::Index j = 0; j < 300; ++j) {
+      const double x = (static_cast<double>(j) + 0.5) / 300;
+      f[j] = 1 + x * x;
+      pdfs(j, 0) = 2 * x;
+      if (falling) pdfs(j, 1) = 2 - 2 * x;
+    }
+  }
+};
+
+template <class Receiver>
+void for_every_divergence(const Receiver& receive) {
+  using phimis::reversed;
+  receive(phimis::kullback_leibler{});
+  receive(phimis::chi_squared{});
+  receive(phimis::tsallis{0.5});
+  receive(phimis::tsallis{3});
+  receive(phimis::pearson_vajda{1.5});
+  receive(phimis::pearson_vajda{3});
+  receive(phimis::total_variation{});
+  receive(phimis::one_sample_variance{});
+  receive(phimis::multi_sample_variance{});
+  receive(reversed<phimis::kullback_leibler>{});
+  receive(reversed<phimis::chi_squared>{});
+  receive(reversed<phimis::tsallis>{phimis::tsallis{0.5}});
+  receive(reversed<phimis::tsallis>{phimis::tsallis{1.5}});
+  receive(reversed<phimis::tsallis>{phimis::tsallis{3}});
+  receive(reversed<phimis::total_variation>{});
+  receive(reversed<phimis::pearson_vajda>{phimis::pearson_vajda{3}});
+}
+
+}  // namespace
+
+TEST_CASE("A technique without density at any observation gets its floor, under every divergence and number of techniques") {
+  for (const auto variate : {control_variate::on, control_variate::off}) {
+    for (const int zeros : {1, 2}) {
+      const silent_problem on(false, zeros);
+      for (const double floor : {0.0, 0.01}) {
+        minimise_options options{.floors = VectorXd::Constant(1 + zeros, floor), .variate = variate};
+        for_every_divergence([&](const auto& divergence) {
+          const minimum found = minimise(divergence, on.f, on.pdfs, on.q, options);
+          CAPTURE(zeros, floor, variate == control_variate::on, typeid(divergence).name());
+          CHECK((found.status == rule_status::updated || found.status == rule_status::local));
+          for (int k = 1; k <= zeros; ++k) CHECK(found.fractions[k] == floor);
+          CHECK(found.residual < 1e-12);
+        });
+      }
+    }
+  }
+}
+
+TEST_CASE("A prior keeps a share for a technique without density, the same of two techniques as of three") {
+  // Of three the first two are one technique that was split: their shares add up to that of two.
+  const silent_problem two(false, 1);
+  silent_problem split(true, 1);
+  split.pdfs.col(1) = split.pdfs.col(0);
+  for_every_divergence([&](const auto& divergence) {
+    if constexpr (phimis::detail::is_variance<std::decay_t<decltype(divergence)>>::value) return;
+    double before = 1;  // the distance from the start
+    for (const double prior : {3.0, 100.0, 1e4}) {
+      minimise_options of_two{.start = VectorXd{{0.5, 0.5}}, .prior = prior};
+      minimise_options of_three{.start = VectorXd{{0.25, 0.25, 0.5}}, .prior = prior};
+      const minimum found = minimise(divergence, two.f, two.pdfs, two.q, of_two);
+      const minimum other = minimise(divergence, split.f, split.pdfs, split.q, of_three);
+      CAPTURE(prior, typeid(divergence).name(), found.fractions, other.fractions);
+      // Of three techniques a kink is rounded off to 1e-6, and the prior, a row that outweighs all others, has one at the start.
+      const bool kinked = phimis::detail::is_kinked<std::decay_t<decltype(divergence)>>::value;
+      CHECK(found.status == rule_status::updated);
+      CHECK((other.status == rule_status::updated || kinked));
+      CHECK(std::fabs(found.fractions[1] - other.fractions[2]) < (kinked ? 1e-5 : 1e-9));
+      const double now = std::fabs(found.fractions[1] - 0.5);
+      CHECK(now <= before);
+      before = now;
+    }
+  });
+}
+
+TEST_CASE("A prior without a share for a technique is convex there, too, and bars it where it is infinitely far") {
+  const silent_problem on(true, 0);
+  silent_problem with_uniform(true, 1);
+  with_uniform.pdfs.col(2).setOnes();
+  for_every_divergence([&](const auto& divergence) {
+    for (const double prior : {1.0, 100.0, 1e4}) {
+      const minimum two = minimise(divergence, on.f, on.pdfs, on.q, {.start = VectorXd{{1, 0}}, .prior = prior});
+      const minimum three = minimise(divergence, with_uniform.f, with_uniform.pdfs, with_uniform.q,
+                                     {.start = VectorXd{{1, 0, 0}}, .prior = prior});
+      CAPTURE(prior, typeid(divergence).name(), two.fractions, three.fractions);
+      CHECK((two.status == rule_status::updated || two.status == rule_status::local));
+      CHECK((three.status == rule_status::updated || three.status == rule_status::local));
+      CHECK(two.residual < 1e-10);
+      CHECK(three.residual < 1e-10);
+      if (phimis::infinite_at_zero(divergence)) {
+        CHECK(two.fractions[0] == 1);
+        CHECK(three.fractions[0] == 1);
+      } else if (prior == 1e4) {
+        CHECK(two.fractions[0] > 0.9);
+        CHECK(three.fractions[0] > 0.9);
+      }
+    }
+  });
 }

@@ -84,7 +84,7 @@ PHIMIS_HOST_DEVICE double score_at_zero(const Divergence& divergence) noexcept {
 }
 
 /// s of a prior at the share a of a technique that has the share π of the start: one sample of f = mean where only that
-/// technique has density. s(0) where π is 0.
+/// technique has density. s(0) where π is 0, and 0 where that is infinite: such a technique is to have no fraction.
 template <class Divergence>
 PHIMIS_HOST_DEVICE score<double> prior_score(const Divergence& divergence, double mean, double pi,
                                              double a) noexcept {

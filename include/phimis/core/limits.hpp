@@ -17,6 +17,9 @@ template <class Real>
 inline constexpr Real smallest_normal = std::numeric_limits<Real>::min();
 
 template <class Real>
+inline constexpr Real largest = std::numeric_limits<Real>::max();
+
+template <class Real>
 inline constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
 }  // namespace phimis

@@ -4,6 +4,8 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
+#include <phimis/core/finite.hpp>
+#include <phimis/core/limits.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/simplex_newton.hpp>
 
@@ -24,7 +26,7 @@ enum class control_variate { on, off };
 /// What a technique without density at any observation gets.
 enum class silent_technique {
   kept,   ///< the fraction that it has: nothing is known of it
-  judged  ///< what minimises: its floor
+  judged  ///< what minimises: its floor, where the prior has no share for it
 };
 
 /// What to minimise over m techniques, but for the rows.
@@ -43,6 +45,29 @@ struct minimisation {
   control_variate variate = control_variate::on;
   silent_technique silent = silent_technique::judged;
 };
+
+/// Whether a technique's fraction is looked for.
+enum class freedom {
+  free,
+  kept,    ///< it stays
+  floored  ///< it is the floor
+};
+
+/// That of technique k, `silent` where it has no density at any observation. `infinite`: what `infinite_at_zero` says; a prior
+/// without a share for a technique is then infinite wherever that has a fraction.
+template <class Real>
+PHIMIS_HOST_DEVICE freedom freedom_of(const minimisation<Real>& wanted, int k, bool silent, bool infinite) noexcept {
+  if (silent && wanted.silent == silent_technique::kept) return freedom::kept;
+  const bool has_prior = wanted.prior > 0;
+  const bool in_prior = has_prior && wanted.start[k] > 0;
+  return (silent && !in_prior) || (infinite && has_prior && !in_prior) ? freedom::floored : freedom::free;
+}
+
+/// Whether a number is a positive one of Real, too, but for its rounding.
+template <class Real>
+PHIMIS_HOST_DEVICE bool is_positive_as(double x) noexcept {
+  return is_finite(x) && x <= static_cast<double>(largest<Real>) && static_cast<Real>(x) > 0;
+}
 
 /// The unit of costs of m techniques in which nothing depends on theirs: what a sample costs at the start, where the prior
 /// is then in units of samples. Of equal costs exactly that cost.

@@ -34,14 +34,15 @@ class pair_minimisation {
     const Real inverse = 1 / (largest > smallest ? largest : smallest);
     const double n = static_cast<double>(rows.n);
     double mass[2] = {1, 1};
-    // Powers by themselves ask for no mean.
+    // Positive powers by themselves ask for no mean, and give a silent technique its floor.
     const bool normalised = wanted.variate == control_variate::on;
-    if (normalised || detail::needs_mean(divergence) || wanted.prior > 0 || wanted.silent == silent_technique::kept) {
+    if (normalised || detail::needs_mean(divergence) || wanted.prior > 0 || wanted.silent == silent_technique::kept ||
+        falls(divergence)) {
       mean_ = detail::masses(rows, inverse, mass) / n;
     }
     unit_ = static_cast<double>(inverse);
-    silent_ = wanted.silent == silent_technique::kept && (!(mass[0] > 0) || !(mass[1] > 0));
     for (int k = 0; k < 2; ++k) {
+      freedom_[k] = freedom_of(wanted, k, !(mass[k] > 0), infinite_at_zero(divergence));
       kappa_[k] = normalised && mass[k] > 0 ? n / mass[k] : 1;
       kappa_[k] /= static_cast<double>(wanted.costs[k]) / cost_unit(wanted, 2);
     }
@@ -57,11 +58,12 @@ class pair_minimisation {
   }
 
   PHIMIS_HOST_DEVICE row_minimum minimise(Real* alpha) noexcept {
-    if (silent_ || wanted_.frozen[0] || wanted_.frozen[1]) return {};
+    if (wanted_.frozen[0] || wanted_.frozen[1]) return {};
+    if (freedom_[0] == freedom::kept || freedom_[1] == freedom::kept) return {};
     for (const double kappa : kappa_) {
-      if (!(kappa > 0) || !is_finite(kappa)) return {rule_status::not_converged, {}};
+      if (!is_positive_as<Real>(kappa)) return {rule_status::not_converged, {}};
     }
-    if (!is_finite(unit_)) return {rule_status::not_converged, {}};  // f is subnormal
+    if (!is_positive_as<Real>(unit_)) return {rule_status::not_converged, {}};  // f is subnormal
     // The solver's fractions are those of the scaled pdfs: a_k ∝ α_k/κ_k.
     const double floor1 = static_cast<double>(wanted_.floors[0]);
     const double floor2 = static_cast<double>(wanted_.floors[1]);
@@ -70,7 +72,9 @@ class pair_minimisation {
     const pair_fractions start =
         to_solver(static_cast<double>(wanted_.from[0]), static_cast<double>(wanted_.from[1]));
     prior_ = to_solver(static_cast<double>(wanted_.start[0]), static_cast<double>(wanted_.start[1]));
-    const pair_solution found = solve(low, high, start);
+    const bool is_low = freedom_[0] == freedom::floored;
+    const bool is_settled = is_low || freedom_[1] == freedom::floored;
+    const pair_solution found = is_settled ? end_at(is_low ? low : high) : solve(low, high, start);
 
     row_minimum result;
     result.solution.lambda = found.lambda;
@@ -102,6 +106,19 @@ class pair_minimisation {
  private:
   static constexpr bool local = std::is_same<Divergence, multi_sample_variance>::value;
   static constexpr double rounding = static_cast<double>(epsilon<Real>);
+
+  /// Whether s falls: a score that may be below 0 gives a fraction to where nothing is.
+  PHIMIS_HOST_DEVICE static bool falls(const Divergence& divergence) noexcept {
+    if constexpr (has_exponent<Divergence>::value) {
+      return divergence.exponent() < 0;
+    } else {
+      return false;
+    }
+  }
+
+  PHIMIS_HOST_DEVICE pair_solution end_at(const pair_fractions& alpha) const noexcept {
+    return {alpha, 0, false, 1, sums_at(alpha, 1).lambda};
+  }
 
   /// One block in sixteen of many rows tells where to start: all rows are then read three or four times, not ten.
   PHIMIS_HOST_DEVICE pair_solution solve(const pair_fractions& low, const pair_fractions& high,
@@ -164,7 +181,7 @@ class pair_minimisation {
   double unit_;
   double mean_ = 1;
   pair_fractions prior_{};
-  bool silent_;
+  freedom freedom_[2];
 };
 
 }  // namespace phimis

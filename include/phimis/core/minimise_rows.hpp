@@ -55,7 +55,7 @@ class row_minimisation {
         convex_memory_(prior_shares_ + rows.m + floored_simplex::doubles(rows.m)),
         solver_memory_(convex_memory_ + divergence_on_simplex<chi_squared, double>::doubles(rows.m)),
         variance_memory_(solver_memory_ + simplex_doubles(rows.m)),
-        silent_(indices),
+        freedom_(indices),
         problem_indices_(indices + 2 * rows.m),
         solver_indices_(indices + 3 * rows.m),
         simplex_(rows.m, kappa_, prior_shares_ + rows.m, indices + rows.m) {
@@ -71,7 +71,9 @@ class row_minimisation {
     for (int k = 0; k < rows_.m; ++k) {
       if (!(kappa_[k] > 0) || !is_finite(kappa_[k])) return {rule_status::not_converged, {}};
     }
-    if (detail::needs_mean(divergence_) && !is_finite(unit_ / mean_)) return {rule_status::not_converged, {}};
+    if (detail::needs_mean(divergence_) && !is_positive_as<Real>(unit_ / mean_)) {
+      return {rule_status::not_converged, {}};
+    }
     simplex_.to_theta(wanted_.from, theta_);
     simplex_solution found;
     bool local = false;
@@ -113,12 +115,13 @@ class row_minimisation {
     return wanted_.silent == silent_technique::judged && simplex_.size() == 1 && simplex_.free() > 0;
   }
 
-  PHIMIS_HOST_DEVICE bool held(int k) const noexcept { return wanted_.frozen[k] || silent_[k] != 0; }
+  PHIMIS_HOST_DEVICE bool held(int k) const noexcept { return wanted_.frozen[k] || freedom_[k] != is(freedom::free); }
+  PHIMIS_HOST_DEVICE static constexpr int is(freedom kind) noexcept { return static_cast<int>(kind); }
 
   /// The fraction of a technique that cannot move, the floor of another.
   PHIMIS_HOST_DEVICE Real fixed(int k) const noexcept {
     if (wanted_.frozen[k]) return wanted_.start[k];
-    return silent_[k] != 0 && wanted_.silent == silent_technique::kept ? wanted_.from[k] : wanted_.floors[k];
+    return freedom_[k] == is(freedom::kept) ? wanted_.from[k] : wanted_.floors[k];
   }
 
   /// From masses to κ, the floors, and the centre of the prior.
@@ -126,14 +129,18 @@ class row_minimisation {
     const double n = static_cast<double>(rows_.n);
     const double unit = cost_unit(wanted_, rows_.m);
     for (int k = 0; k < rows_.m; ++k) {
-      silent_[k] = !(kappa_[k] > 0) ? 1 : 0;
+      freedom_[k] = is(freedom_of(wanted_, k, !(kappa_[k] > 0), infinite_at_zero(divergence_)));
       kappa_[k] = wanted_.variate == control_variate::on && kappa_[k] > 0 ? n / kappa_[k] : 1;
       if (!detail::is_variance<Divergence>::value) kappa_[k] /= static_cast<double>(wanted_.costs[k]) / unit;
     }
     simplex_.constrain([&](int k) { return held(k); }, [&](int k) { return fixed(k); });
     double sum = 0;
-    for (int k = 0; k < rows_.m; ++k) sum += static_cast<double>(wanted_.start[k]) / kappa_[k];
-    for (int k = 0; k < rows_.m; ++k) prior_shares_[k] = static_cast<double>(wanted_.start[k]) / kappa_[k] / sum;
+    for (int k = 0; k < rows_.m; ++k) {
+      // What is held at 0 is infinitely far from any share: a constant.
+      const bool in_prior = !held(k) || fixed(k) > 0;
+      sum += prior_shares_[k] = in_prior ? static_cast<double>(wanted_.start[k]) / kappa_[k] : 0;
+    }
+    for (int k = 0; k < rows_.m; ++k) prior_shares_[k] = sum > 0 ? prior_shares_[k] / sum : 0;
   }
 
   template <class Objective>
@@ -277,7 +284,7 @@ class row_minimisation {
   double* convex_memory_;
   double* solver_memory_;
   double* variance_memory_;
-  int* silent_;
+  int* freedom_;
   int* problem_indices_;
   int* solver_indices_;
   floored_simplex simplex_;

@@ -211,13 +211,13 @@ PHIMIS_HOST_DEVICE pair_sums sum_pair(const Divergence& divergence, const column
 ///
 /// With m_k = μ'_k = Σ f p_k/(p q) / n and S = Σ α_k m_k²,
 ///
-///     ζ = Σ (p_1 − p_2)/q t² + n S',   slope = 2 Σ (p_1 − p_2)²/(q p) t² − n S'',   n = at.mass
+///     ζ = Σ (p_1 − p_2)/q t² + n S',   slope = 2 Σ (p_1 − p_2)²/(q p) t² − n S'',   n = at.mass/every
 template <class Real>
 PHIMIS_HOST_DEVICE pair_sums sum_pair(const multi_sample_variance&, const column_pointers<Real>& rows,
                                       const pair_point<Real>& at, int every = 1) noexcept {
   double total[9] = {};
   detail::sum_blocks<9, Real>(rows, every, detail::variance_terms<Real>{detail::pair_rows<Real>(rows, at)}, total);
-  const double n = at.mass;
+  const double n = at.mass / every;
   double s1 = 0;
   double s2 = 0;
   double m[2] = {};

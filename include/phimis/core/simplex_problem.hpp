@@ -180,7 +180,6 @@ class divergence_on_simplex {
     for (int k = 0; k < rows_.m && weight > 0; ++k) {
       const double a = on_.beta()[k] / kappa_[k];
       const score<double> s = prior_score(divergence_, mean_, shares_[k], a);
-      if (!(a > 0) && !(shares_[k] > 0)) continue;
       raw_[k] += weight * s.value / kappa_[k];
       raw_sizes_[k] += weight * std::fabs(s.value) / kappa_[k];
       *lambda_ += weight * a * std::fabs(s.value);

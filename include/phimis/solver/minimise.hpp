@@ -29,7 +29,7 @@ struct minimise_options {
   double prior = 0;           ///< weight of the start, in observations
   double tolerance = 0;       ///< of the residual, at which to stop; below it, as far as rounding lets it
   control_variate variate = control_variate::on;
-  /// Threads of the host, from 10⁵ observations on; none by default. The result is the same to the last bit.
+  /// Threads of the host, from 10⁵ observations on; none by default. The result is the same to the last bit. Must not throw.
   parallel_for run{};
 };
 
@@ -38,7 +38,7 @@ struct minimum {
   Eigen::VectorXd fractions;
   rule_status status = rule_status::no_information;
   int iterations = 0;
-  int evaluations = 0;             ///< of the gradient
+  int evaluations = 0;             ///< of the gradient; of three techniques or more also those of a sixteenth of many rows
   double lambda = 0;               ///< Σ_j p_j/q_j |s(t_j)|, in a unit of f that the solver chose
   double residual = 0;             ///< of the conditions of optimality on all coordinates, over λ
   double gap = 0;                  ///< the objective is within gap · λ of its minimum, where it is convex
@@ -63,7 +63,8 @@ inline Eigen::VectorXd or_default(const Eigen::VectorXd& given, Eigen::Index m, 
 ///     auto best = phimis::minimise(phimis::kullback_leibler{}, f, pdfs, q);
 ///
 /// The rules' `exact_minimiser` for data that lie in matrices and for a number of techniques that is known when it runs. A
-/// technique without density at any observation gets its floor: no term has its fraction.
+/// technique without density at any observation gets its floor, unless the prior has a share for it. So does one that has no share
+/// of a prior under a reversed divergence: anything else would be infinitely far from the start.
 ///
 /// Shapes   f[n], pdfs[n × m], q[n]: the density that each observation was drawn from.
 /// Errors   std::invalid_argument for wrong shapes and options out of range. Observations that are not finite are

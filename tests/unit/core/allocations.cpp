@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Core takes no memory from a heap: this executable counts every call of operator new.
+// Core takes no memory from a heap: this executable counts every call of operator new, for aligned types, too.
 #include "catch.hpp"
 #include "random.hpp"
 
 #include <phimis/core.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <new>
 
@@ -14,9 +16,11 @@ namespace {
 
 std::atomic<long> allocations{0};
 
-void* allocate(std::size_t size) noexcept {
+void* allocate(std::size_t size, std::align_val_t alignment = {}) noexcept {
   ++allocations;
-  void* const memory = std::malloc(size > 0 ? size : 1);
+  // A multiple of the alignment, as aligned_alloc wants it.
+  const auto unit = std::max(static_cast<std::size_t>(alignment), alignof(std::max_align_t));
+  void* const memory = std::aligned_alloc(unit, (size / unit + 1) * unit);
   if (memory == nullptr) std::abort();
   return memory;
 }
@@ -28,6 +32,12 @@ void* operator new[](std::size_t size) { return allocate(size); }
 // A sanitizer has its own of these, whose memory only its own delete may have back.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
 void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
+void* operator new(std::size_t size, std::align_val_t alignment) { return allocate(size, alignment); }
+void* operator new[](std::size_t size, std::align_val_t alignment) { return allocate(size, alignment); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
@@ -107,6 +117,12 @@ TEST_CASE("The counter of allocations counts") {
   int* volatile number = new int(1);
   CHECK(allocations == before + 1);
   delete number;
+  struct alignas(64) wide {
+    double lanes[8];
+  };
+  wide* volatile block = new wide{};
+  CHECK(allocations == before + 2);
+  delete block;
 }
 
 TEST_CASE("Core allocates nothing, whatever the rule") {
