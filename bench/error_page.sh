@@ -41,8 +41,8 @@ page verdict
 cat <<TEXT
 
 Shrinkage is a choice between V2 and the lobe. V2's three pdfs are linearly dependent but for a part in ten thousand, and a third of the
-error hangs on coefficients that the samples leave almost open; on the lobe, too, and there they are wrong: Optimal MIS, which trusts
-them, has many times the error of equal counts. \`pooled_control_variates{shrinkage::off}\` trusts them; no other combination does.
+mean squared error hangs on coefficients that the samples leave almost open; on the lobe, too, and there they are wrong: Optimal MIS,
+which trusts them, has many times the mean squared error of equal counts. \`pooled_control_variates{shrinkage::off}\` trusts them; no other combination does.
 On the lobe, as on V4, equal counts are as good as the best: there is nothing to learn.
 
 Peers without fractions to learn win, too: Optimal MIS, which has control variates, wherever its column is below the default's, which has

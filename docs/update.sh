@@ -36,7 +36,7 @@ fill() {
         else
           command=${line#'<!-- output: '} command=${command%' -->'}
           skip_old=yes
-          sh -c "$command"
+          sh -c "$command" || { echo "docs/update.sh: $1: failed: $command" >&2; return 1; }
         fi ;;
       *) skip_old= ;;
     esac
@@ -48,7 +48,7 @@ fill() {
 status=0
 for page in $pages; do
   filled=$(mktemp)
-  fill "$page" >"$filled"
+  fill "$page" >"$filled" || { rm -f "$filled"; exit 1; }
   if cmp -s "$filled" "$page"; then
     rm -f "$filled"
   elif [ -n "$check" ]; then

@@ -5,8 +5,9 @@ set -u
 
 usage="usage: tests/robustness.sh [--quick] [STEP...]
 
-  STEP      flags, mutation, coverage, fuzz; all by default. Of the others the page has what their last run printed.
-  --quick   one set of flags, a minute of fuzzing, and no page
+  STEP      flags, mutation, coverage, fuzz; all by default. Of the others the page has what their last run printed, which
+            must be in build/robustness.
+  --quick   one set of flags, a minute of fuzzing, and no page; kept in build/robustness/quick
   --help    this
 
 Takes about an hour and a half on two cores, without flags and mutation half an hour."
@@ -23,8 +24,16 @@ for option; do
 done
 
 cd "$(dirname "$0")/.." || exit 1
-kept=build/robustness
+kept=build/robustness${quick:+/quick}
 mkdir -p "$kept"
+: "${steps:=flags mutation coverage fuzz}"
+for step in flags mutation coverage fuzz; do
+  case " $steps " in *" $step "*) continue ;; esac
+  [ -n "$quick" ] || [ -f "$kept/$step.txt" ] || {
+    echo "tests/robustness.sh: the page needs $step, too, of which $kept has no run" >&2
+    exit 2
+  }
+done
 
 # keep NAME COMMAND...: what it prints, also while it runs; only of what succeeds.
 keep() {
@@ -35,7 +44,7 @@ keep() {
   mv "$kept/$name.new" "$kept/$name.txt"
 }
 
-for step in ${steps:-flags mutation coverage fuzz}; do
+for step in $steps; do
   echo "== $step"
   case $step in
     flags) keep flags sh tests/hard_flags.sh ${quick:+--quick} || exit 1 ;;

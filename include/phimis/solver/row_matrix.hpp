@@ -19,7 +19,8 @@
 
 namespace phimis {
 
-/// Calls part(0), …, part(count − 1), in any order and on any threads, and returns when all have ended.
+/// Calls part(0), …, part(count − 1), in any order and on any threads, and returns when all have ended. Must not
+/// throw: solvers do not.
 using parallel_for = std::function<void(int count, const std::function<void(int)>& part)>;
 
 /// Rows of observations that lie in matrices, in parts that may be read at the same time.
