@@ -107,9 +107,10 @@ class newton_raphson : public rule_base<Real, 2, detail::newton_sums<Real>> {
       zeta -= batch.score / batch.mixture * batch.tilt;
     }
     for (int k = 0; k < 2 && options.prior > 0; ++k) {
-      if (!(options.start[k] > 0)) continue;
-      if (!(alpha[k] > 0)) {
-        // An end is infinitely far from the prior: go back to where it is.
+      const bool in_prior = options.start[k] > 0;
+      if (!in_prior && exponent() > 0) continue;
+      if (!in_prior || !(alpha[k] > 0)) {
+        // Infinitely far from the prior: go back to where it is.
         alpha = share_budget(options.start, options);
         return this->end(rule_status::updated);
       }

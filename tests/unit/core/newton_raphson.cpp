@@ -353,6 +353,17 @@ TEMPLATE_TEST_CASE("From an end, infinitely far from its prior, a step goes back
   }
 }
 
+TEMPLATE_TEST_CASE("A technique without a share of the prior gets none of a reversed divergence", "", float, double) {
+  phimis::rule_options<TestType, 2> options{.start = {{1, 0}}, .floors = {{0, TestType(0.1)}}};
+  options.prior = 1;
+  newton_raphson<phimis::reversed<phimis::chi_squared>, TestType> rule({}, newton_form::safeguarded, options);
+  for (int batch = 0; batch < 3; ++batch) {
+    for (const auto& o : two_triangles::observe<TestType>(f, 0.9, 50, 4)) rule.observe(o);
+    CHECK(rule.update() == rule_status::updated);
+    CHECK(rule.fractions()[0] == TestType(0.9));
+  }
+}
+
 TEMPLATE_TEST_CASE("A step that is no number moves nothing and is counted", "", float, double) {
   auto options = phimis::without_floors<TestType, 2>();
   options.prior = 1;
