@@ -75,7 +75,6 @@ void check_unbiased(const char* name, const Rule& rule) {
 
 /// Two pdfs that differ by 1 %, and by a lobe of a thousandth of the domain that half of the runs of 100 samples do not meet.
 struct hidden_lobe {
-  static constexpr const char* name = "hidden lobe";
   static constexpr double lower = 0.5, width = 1e-3, share = 0.01, tilt = 0.01;
   struct uniform {
     double pdf(double x) const { return x >= 0 && x <= 1 ? 1 : 0; }

@@ -535,20 +535,20 @@ TEST_CASE("A prior without a share for a technique is convex there, too, and bar
   with_uniform.pdfs.col(2).setOnes();
   for_every_divergence([&](const auto& divergence) {
     for (const double prior : {1.0, 100.0, 1e4}) {
-      const minimum two = minimise(divergence, on.f, on.pdfs, on.q, {.start = VectorXd{{1, 0}}, .prior = prior});
-      const minimum three = minimise(divergence, with_uniform.f, with_uniform.pdfs, with_uniform.q,
-                                     {.start = VectorXd{{1, 0, 0}}, .prior = prior});
-      CAPTURE(prior, typeid(divergence).name(), two.fractions, three.fractions);
-      CHECK((two.status == rule_status::updated || two.status == rule_status::local));
-      CHECK((three.status == rule_status::updated || three.status == rule_status::local));
-      CHECK(two.residual < 1e-10);
-      CHECK(three.residual < 1e-10);
+      const minimum of_two = minimise(divergence, on.f, on.pdfs, on.q, {.start = VectorXd{{1, 0}}, .prior = prior});
+      const minimum of_three = minimise(divergence, with_uniform.f, with_uniform.pdfs, with_uniform.q,
+                                        {.start = VectorXd{{1, 0, 0}}, .prior = prior});
+      CAPTURE(prior, typeid(divergence).name(), of_two.fractions, of_three.fractions);
+      CHECK((of_two.status == rule_status::updated || of_two.status == rule_status::local));
+      CHECK((of_three.status == rule_status::updated || of_three.status == rule_status::local));
+      CHECK(of_two.residual < 1e-10);
+      CHECK(of_three.residual < 1e-10);
       if (phimis::infinite_at_zero(divergence)) {
-        CHECK(two.fractions[0] == 1);
-        CHECK(three.fractions[0] == 1);
+        CHECK(of_two.fractions[0] == 1);
+        CHECK(of_three.fractions[0] == 1);
       } else if (prior == 1e4) {
-        CHECK(two.fractions[0] > 0.9);
-        CHECK(three.fractions[0] > 0.9);
+        CHECK(of_two.fractions[0] > 0.9);
+        CHECK(of_three.fractions[0] > 0.9);
       }
     }
   });
