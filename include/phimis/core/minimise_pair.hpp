@@ -46,14 +46,16 @@ class pair_minimisation {
       kappa_[k] = normalised && mass[k] > 0 ? n / mass[k] : 1;
       kappa_[k] /= static_cast<double>(wanted.costs[k]) / cost_unit(wanted, 2);
     }
+    // Sums take κ over the smaller of the two, so that no power of p overflows, in whatever order it is multiplied; V[F], of
+    // which p is a part only, takes f in that unit.
+    const double smaller = kappa_[0] < kappa_[1] ? kappa_[0] : kappa_[1];
+    if (!local) scale_ = smaller;
+    if (local) unit_ *= smaller;
     if (detail::needs_mean(divergence)) {
-      unit_ /= mean_;
+      unit_ /= mean_ * scale_;
       mean_ = 1;
     } else {
-      // Powers take f in any unit: one in which scaled pdfs are no smaller than f.
-      const double smallest_kappa = kappa_[0] < kappa_[1] ? kappa_[0] : kappa_[1];
-      unit_ *= smallest_kappa;
-      mean_ *= smallest_kappa;
+      mean_ *= smaller;
     }
   }
 
@@ -61,7 +63,9 @@ class pair_minimisation {
     if (wanted_.frozen[0] || wanted_.frozen[1]) return {};
     if (freedom_[0] == freedom::kept || freedom_[1] == freedom::kept) return {};
     for (const double kappa : kappa_) {
-      if (!is_positive_as<Real>(kappa)) return {rule_status::not_converged, {}};
+      if (!is_positive_as<double>(kappa) || !is_positive_as<Real>(kappa / scale_)) {
+        return {rule_status::not_converged, {}};
+      }
     }
     if (!is_positive_as<Real>(unit_)) return {rule_status::not_converged, {}};  // f is subnormal
     // The solver's fractions are those of the scaled pdfs: a_k ∝ α_k/κ_k.
@@ -138,11 +142,14 @@ class pair_minimisation {
   /// Sums over rows at a point, and the prior's two rows: one for each technique, in which only it has density.
   PHIMIS_HOST_DEVICE pair_sums sums_at(const pair_fractions& at, int every) const noexcept {
     const pair_point<Real> point{{static_cast<Real>(at.first), static_cast<Real>(at.second)},
-                                 {static_cast<Real>(kappa_[0]), static_cast<Real>(kappa_[1])},
+                                 {static_cast<Real>(kappa_[0] / scale_), static_cast<Real>(kappa_[1] / scale_)},
                                  static_cast<Real>(unit_),
                                  wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n),
                                  wanted_.variate == control_variate::on};
     pair_sums sums = sum_pair(divergence_, rows_, point, every);
+    sums.zeta *= scale_;
+    sums.slope *= scale_;
+    sums.lambda *= scale_;
     if (rows_.n < 128) sums.exponent = 0;  // another evaluation costs less than logarithms
     const double weight = static_cast<double>(wanted_.prior) / every;
     if (weight > 0) {
@@ -178,6 +185,7 @@ class pair_minimisation {
   const column_pointers<Real>& rows_;
   const minimisation<Real>& wanted_;
   double kappa_[2];
+  double scale_ = 1;
   double unit_;
   double mean_ = 1;
   pair_fractions prior_{};
