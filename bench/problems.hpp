@@ -4,6 +4,7 @@
 
 #include "any_technique.hpp"
 
+#include <papers/hidden_lobe.hpp>
 #include <papers/linear_problems.hpp>
 
 #include <phimis/analysis/optimum.hpp>
@@ -282,41 +283,20 @@ struct ball {
   }
 };
 
-/// Two densities that differ by 1 %, and by a lobe of a thousandth of the domain that few samples meet.
-///
-///     p_1 = 1,   p_2 = .99 (1 + .01 (2x − 1)) + .01 · 1000 on [.5, .501],   f = x² + .2 sin 20x
-namespace lobe {
-inline double f(double x) { return x * x + 0.2 * std::sin(20 * x); }
-struct uniform {
-  double pdf(double x) const { return x >= 0 && x <= 1 ? 1 : 0; }
-  template <class Next>
-  double sample(Next&& next) const {
-    return next();
-  }
-};
-struct lobed {
-  static constexpr double share = 0.01, tilt = 0.01, lower = 0.5, width = 1e-3;
-  double pdf(double x) const {
-    if (!(x >= 0 && x <= 1)) return 0;
-    return (1 - share) * (1 + tilt * (2 * x - 1)) + (x >= lower && x < lower + width ? share / width : 0);
-  }
-  template <class Next>
-  double sample(Next&& next) const {
-    if (next() < share) return lower + width * next();
-    const double b = 1 - tilt;  // tilt x² + b x = u
-    return (std::sqrt(b * b + 4 * tilt * next()) - b) / (2 * tilt);
-  }
-};
-}  // namespace lobe
-
 inline problem<2> hidden_lobe() {
-  const any_techniques<2> techniques(any_technique(lobe::uniform{}), any_technique(lobe::lobed{}));
-  return detail::with_exact<2>(
-      {"lobe", 1, [](const point& x) { return lobe::f(x[0]); }, techniques, {0}, {1}, 0, {}, {}, 0},
-      {lobe::f,
-       phimis::technique_set(lobe::uniform{}, lobe::lobed{}),
-       phimis::interval(0, 1),
-       {lobe::lobed::lower, lobe::lobed::lower + lobe::lobed::width}});
+  using papers::hidden_lobe;
+  const any_techniques<2> techniques(any_technique(hidden_lobe::uniform{}), any_technique(hidden_lobe::lobed{}));
+  return detail::with_exact<2>({hidden_lobe::name,
+                                1,
+                                [](const point& x) { return hidden_lobe::f(x[0]); },
+                                techniques,
+                                {0},
+                                {1},
+                                0,
+                                {},
+                                {},
+                                0},
+                               hidden_lobe::exact());
 }
 
 inline problem<4> two_dimensions() { return plane::exact(); }

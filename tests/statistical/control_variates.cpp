@@ -4,6 +4,7 @@
 // about 60.
 
 #include "catch.hpp"
+#include "papers/hidden_lobe.hpp"
 #include "papers/tsallis_whole_line.hpp"
 
 #include <phimis/analysis/variance.hpp>
@@ -18,6 +19,7 @@
 
 namespace {
 
+using papers::hidden_lobe;
 using phimis::cross_fitted_control_variates;
 using phimis::integrate_options;
 using phimis::pooled_control_variates;
@@ -72,35 +74,6 @@ void check_unbiased(const char* name, const Rule& rule) {
         4);
   }
 }
-
-/// Two pdfs that differ by 1 %, and by a lobe of a thousandth of the domain that half of the runs of 100 samples do not meet.
-struct hidden_lobe {
-  static constexpr double lower = 0.5, width = 1e-3, share = 0.01, tilt = 0.01;
-  struct uniform {
-    double pdf(double x) const { return x >= 0 && x <= 1 ? 1 : 0; }
-    template <class Next>
-    double sample(Next&& next) const {
-      return next();
-    }
-  };
-  struct lobed {
-    double pdf(double x) const {
-      if (!(x >= 0 && x <= 1)) return 0;
-      return (1 - share) * (1 + tilt * (2 * x - 1)) + (x >= lower && x < lower + width ? share / width : 0);
-    }
-    template <class Next>
-    double sample(Next&& next) const {
-      if (next() < share) return lower + width * next();
-      const double b = 1 - tilt;  // tilt x² + b x = u
-      return (std::sqrt(b * b + 4 * tilt * next()) - b) / (2 * tilt);
-    }
-  };
-  static double f(double x) { return x * x + 0.2 * std::sin(20 * x); }
-  static auto techniques() { return phimis::technique_set(uniform{}, lobed{}); }
-  static auto exact() {
-    return phimis::analysis::problem(f, techniques(), phimis::interval(0, 1), {lower, lower + width});
-  }
-};
 
 /// Not above what was measured, within four errors of ours; prototypes' figures have errors of 2 to 3 % of their own.
 void check_not_worse(const outcome& ours, double measured) { CHECK(ours.mse < measured * 1.03 + 4 * ours.mse_error); }
