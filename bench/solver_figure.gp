@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # gnuplot -e "data = 'FILE.csv'; picture = 'FILE.svg'": seconds against m, a row for each γ and a column for each n.
 set encoding utf8
-set terminal svg size 1280,760 dynamic enhanced font 'DejaVu Sans,15' background '#ffffff'
+set terminal svg size 1280,820 dynamic enhanced font 'DejaVu Sans,15' background '#ffffff'
 set output picture
 set datafile separator ','
 set grid linecolor rgb '#dddddd' linetype 1
