@@ -7,7 +7,7 @@ usage="usage: tests/fuzz.sh [SECONDS [SEED]]
        tests/fuzz.sh --runs RUNS [SEED]
 
   SECONDS   of all fuzzers together, 60 by default; at least one for each
-  RUNS      executions of each fuzzer, from the seeds alone: with a seed the same ones on any machine
+  RUNS      executions of each fuzzer, from the seeds alone: with a seed the same ones in every run on a machine
   SEED      of what is tried; another one each time by default
   --help    this
 
@@ -54,11 +54,15 @@ findings=build/fuzz/findings
 mkdir -p "$findings"
 total=0
 failed=
+words=
 for name; do
   begin=$(date +%s)
   grown=build/fuzz/corpus/$name
+  launcher=
   if [ -n "$runs" ]; then
     limit=-runs=$runs
+    # libFuzzer learns from pointers that are compared, too: with other addresses it tries other inputs.
+    if setarch -R true 2>/dev/null; then launcher="setarch -R"; fi
     grown=build/fuzz/corpus_of_runs/$name
     rm -rf "$grown"
   else
@@ -67,11 +71,15 @@ for name; do
   log=build/fuzz/$name.log
   mkdir -p "$grown"
   # A unit that takes 20 seconds is a finding. Long inputs say little that short ones do not.
-  if "build/fuzz/tests/fuzz/fuzz_$name" -seed="$seed" "$limit" -timeout=20 -max_len=600 -print_final_stats=1 \
-    -artifact_prefix="$findings/$name-" "$grown" "tests/fuzz/corpus/$name" </dev/null >"$log" 2>&1; then
+  # shellcheck disable=SC2086  # no word, or two
+  if $launcher "build/fuzz/tests/fuzz/fuzz_$name" -seed="$seed" "$limit" -reload=0 -timeout=20 -max_len=600 \
+    -print_final_stats=1 -artifact_prefix="$findings/$name-" "$grown" "tests/fuzz/corpus/$name" </dev/null >"$log" 2>&1
+  then
     result=clean
   else
     failed="$failed $name"
+    words="$words$(grep -a -e '^broken' -e '^==[0-9]*== *ERROR' -e '^Base64' "$log")
+"
     result=FAILED
     grep -v '^#[0-9]' "$log" | tail -n 60
   fi
@@ -82,6 +90,7 @@ for name; do
 done
 
 if [ -n "$failed" ]; then
+  printf '%s' "$words"
   echo "fuzz: $total executions of $# fuzzers; failed:$failed; inputs in $PWD/$findings"
   exit 1
 fi

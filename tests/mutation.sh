@@ -85,7 +85,7 @@ try() {
   # A mutant may never end.
   timeout 120 "$3/test" >"$3/log" 2>&1 </dev/null && try_result=0 || try_result=1
   rm -f "$3/test"
-  return $try_result
+  return "$try_result"
 }
 
 # put IDENTIFIER HEADER TO: the header with that mutant.

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Runs the tests from a fresh clone: installs what is missing, runs the workflow of every preset with tests, the hard cases
-# under -ffast-math, a minute of fuzzing, then the quick reproduction. The last line counts the tests of all.
+# under -ffast-math, a minute of fuzzing, then the quick reproduction. The summary names what failed, and its last line
+# counts the tests of all.
 set -u
 
 usage="usage: tests/run.sh [--fast]
@@ -36,6 +37,7 @@ for preset in $presets; do
   results=build/$preset/tests.xml
   rm -f "$results"
   echo "== $preset"
+  failures=
   begin=$(date +%s)
   status=0
   cmake --workflow --preset "$preset" </dev/null || status=$?
@@ -44,29 +46,36 @@ for preset in $presets; do
     good=$(($(number_of tests "$results") - bad - $(number_of skipped "$results") - $(number_of disabled "$results")))
     # CTest fails, too, where a test could not be run at all.
     if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then bad=1; fi
+    failures=$(sed -n 's/.*<testcase name="\([^"]*\)".*status="fail".*/  failed: \1/p' "$results")
   else
-    echo "tests/run.sh: preset $preset was not built" >&2
+    failures="  not built"
     good=0 bad=1
   fi
   passed=$((passed + good))
   failed=$((failed + bad))
   summary="$summary$preset: $good passed, $bad failed, $(($(date +%s) - begin)) s
-"
+${failures:+$failures
+}"
 done
 
 for step in $more; do
   echo "== $step"
+  failures=
   begin=$(date +%s)
   good=1
+  log=build/$step.log
   case $step in
-    flags) sh tests/hard_flags.sh --quick </dev/null || good=0 ;;
-    fuzz) sh tests/fuzz.sh --runs 10000 1 </dev/null || good=0 ;;  # what is new is searched for in longer runs
-    reproduction) sh examples/reproduce.sh --quick </dev/null || good=0 ;;
-  esac
+    flags) sh tests/hard_flags.sh --quick ;;
+    fuzz) sh tests/fuzz.sh --runs 10000 1 ;;  # what is new is searched for in longer runs
+    reproduction) sh examples/reproduce.sh --quick ;;
+  esac </dev/null >"$log" 2>&1 || good=0
+  cat "$log"
+  [ $good -eq 1 ] || failures=$(tail -n 5 "$log" | sed 's/^/  /')
   passed=$((passed + good))
   failed=$((failed + 1 - good))
   summary="$summary$step: $good passed, $((1 - good)) failed, $(($(date +%s) - begin)) s
-"
+${failures:+$failures
+}"
 done
 
 echo "== summary"

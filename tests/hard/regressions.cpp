@@ -426,3 +426,41 @@ TEST_CASE("Where one sample weighs 1e281 proportional pdfs stay under a prior: n
     }
   }
 }
+
+TEMPLATE_TEST_CASE("Where one sample weighs so much that a prior's powers would overflow, the prior decides", "",
+                   float, double) {
+  // The row is worth w u²/x, or its like in other powers, beside prior · mean²: 1e-23 of it at most.
+  const auto with = [](const auto& divergence, auto techniques) {
+    constexpr int M = decltype(techniques)::value;
+    using Divergence = std::decay_t<decltype(divergence)>;
+    for (const double size : {1e30, 1e60, 1e150, 1e303}) {
+      if (!(size < std::numeric_limits<TestType>::max())) continue;
+      for (const bool small_q : {false, true}) {
+        rule_options<TestType, M> options{};
+        options.start = {{TestType(0.75), TestType(0.25)}};
+        if constexpr (M == 3) options.start = {{TestType(0.75), TestType(0.1875), TestType(0.0625)}};
+        options.floors = {};
+        options.prior = TestType(1) / 64;
+        phimis::exact_minimiser<Divergence, phimis::fixed_table<TestType, M, 4>> rule(divergence, options,
+                                                                                      control_variate::off);
+        observation<TestType, M> sample{};
+        sample.f = 1;
+        sample.q = TestType(small_q ? 1 / size : 1);
+        for (int k = 0; k < M; ++k) sample.pdfs[k] = TestType(small_q ? k + 1 : size / (k + 1));
+        rule.observe(sample);
+        CAPTURE(M, size, small_q);
+        CHECK(rule.update() == rule_status::updated);
+        for (int k = 0; k < M; ++k) {
+          CHECK(std::fabs(rule.fractions()[k] - options.start[k]) < 16 * std::numeric_limits<TestType>::epsilon());
+        }
+      }
+    }
+  };
+  const auto with_each = [&](const auto& divergence) {
+    with(divergence, std::integral_constant<int, 2>());
+    with(divergence, std::integral_constant<int, 3>());
+  };
+  with_each(phimis::one_sample_variance{});
+  with_each(phimis::tsallis{2});
+  with_each(phimis::tsallis{8});
+}

@@ -92,6 +92,18 @@ PHIMIS_HOST_DEVICE bool has_prices(const minimisation<Real>& wanted, int m) noex
   return false;
 }
 
+/// The unit of f in which the samples of a prior, each of f = mean, have a score of at most one where powers of f/p would
+/// overflow otherwise. Beside such a prior rows are next to nothing.
+///
+/// falls: whether scores grow where f is small.
+template <class Real>
+PHIMIS_HOST_DEVICE void limit_mean(double& unit, double& mean, bool falls) noexcept {
+  if (falls ? mean >= 1 : mean <= 1) return;
+  if (!is_positive_as<Real>(unit / mean)) return;
+  unit /= mean;
+  mean = 1;
+}
+
 /// A minimum, and how good it is.
 struct row_minimum {
   rule_status status = rule_status::no_information;

@@ -56,6 +56,7 @@ class pair_minimisation {
       mean_ = 1;
     } else {
       mean_ *= smaller;
+      if (wanted.prior > 0) limit_mean<Real>(unit_, mean_, falls(divergence));
     }
   }
 

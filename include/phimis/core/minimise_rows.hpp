@@ -63,6 +63,7 @@ class row_minimisation {
     const Real inverse = 1 / (largest > smallest ? largest : smallest);
     unit_ = static_cast<double>(inverse);
     mean_ = detail::masses(rows, inverse, kappa_) / mass();
+    if (detail::is_variance<Divergence>::value && wanted.prior > 0) limit_mean<Real>(unit_, mean_, false);
     constrain();
   }
 

@@ -6,6 +6,7 @@
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/divergence_at.hpp>
 #include <phimis/core/finite.hpp>
+#include <phimis/core/minimisation.hpp>
 #include <phimis/core/mixture_sums.hpp>
 #include <phimis/core/row_parts.hpp>
 
@@ -202,9 +203,11 @@ class divergence_on_simplex {
   PHIMIS_HOST_DEVICE void choose_unit(const double* theta) noexcept {
     if (power() == 0) return;
     const double reference = ratio(theta, power() > 0);
-    if (!(reference > 0) || !is_finite(1 / reference)) return;
-    unit_ /= reference;
-    mean_ /= reference;
+    if (reference > 0 && is_finite(1 / reference)) {
+      unit_ /= reference;
+      mean_ /= reference;
+    }
+    if (prior_ > 0) limit_mean<Real>(unit_, mean_, power() < 0);
   }
 
   /// The largest f/p at θ, or the smallest that is not 0, in the unit.
