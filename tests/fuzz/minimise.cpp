@@ -101,7 +101,8 @@ void solve(const Divergence& divergence, byte_source& bytes) {
   const std::span<const bool> held(frozen.get(), static_cast<std::size_t>(m));
   byte_source::tell("n ", n, ", m ", m, ", status ", static_cast<int>(found.status), "\nf ", f.transpose(), "\nq ",
                     q.transpose(), "\npdfs\n", pdfs, "\nstart ", start.transpose(), "\nfloors ", floors.transpose(),
-                    "\ncosts ", costs.transpose(), "\nfractions ", found.fractions.transpose(), "\nresidual ",
+                    "\ncosts ", costs.transpose(), "\nprior ", options.prior, ", variate ",
+                    static_cast<int>(options.variate), "\nfractions ", found.fractions.transpose(), "\nresidual ",
                     found.residual, " gap ", found.gap);
   demand(invariants::off_simplex<double>(span(found.fractions), span(floors), span(start), held));
   if constexpr (requires { true_phi_at(divergence, real(1)); } || phimis::has_exponent<Divergence>::value) {
@@ -118,6 +119,7 @@ void solve(const Divergence& divergence, byte_source& bytes) {
     for (Eigen::Index k = 0; k < m; ++k) {
       const auto& y = rows.y[static_cast<std::size_t>(k)];
       const bool silent = std::all_of(y.begin(), y.end(), [](auto share) { return !(share > 0); });
+      if (silent && (pdfs.col(k).array() > 0).any()) return;  // so of a pdf
       if (!silent || frozen[static_cast<std::size_t>(k)] || (options.prior > 0 && start[k] > 0)) continue;
       given_up = true;
       if (found.fractions[k] != floors[k]) {

@@ -94,6 +94,16 @@ PHIMIS_HOST_DEVICE score<double> prior_score(const Divergence& divergence, doubl
   return score_at(divergence, a > 0 && t > largest ? largest : t);  // a fraction may be subnormal
 }
 
+/// A unit of f in which the mean, which is f at a prior's samples, is at most 1, or at least 1 where scores grow as t falls:
+/// powers of a mean of 1e300, beside one sample that weighs so much, are no numbers. Left alone where Real has no such unit.
+template <class Real>
+PHIMIS_HOST_DEVICE void limit_mean(double& unit, double& mean, bool falls) noexcept {
+  if (falls ? mean >= 1 : mean <= 1) return;
+  if (!is_positive_as<Real>(unit / mean)) return;
+  unit /= mean;
+  mean = 1;
+}
+
 /// φ(t) of a divergence at t = g/p(α) ≥ 0; the divergence is ∫ p φ(g/p) dx.
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE Real phi_at(const Divergence& divergence, Real t) noexcept {

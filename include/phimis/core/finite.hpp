@@ -3,6 +3,7 @@
 #define PHIMIS_CORE_FINITE_HPP
 
 #include <phimis/core/config.hpp>
+#include <phimis/core/limits.hpp>
 
 #include <cstdint>
 #include <cstring>
@@ -29,6 +30,12 @@ PHIMIS_HOST_DEVICE inline bool is_finite(double value) noexcept {
 template <class Real>
 PHIMIS_HOST_DEVICE bool is_density(Real value) noexcept {
   return is_finite(value) && value >= Real(0);
+}
+
+/// Whether a number is a positive one of Real, too, but for its rounding.
+template <class Real>
+PHIMIS_HOST_DEVICE bool is_positive_as(double x) noexcept {
+  return is_finite(x) && x <= static_cast<double>(largest<Real>) && static_cast<Real>(x) > 0;
 }
 
 }  // namespace phimis

@@ -4,8 +4,6 @@
 
 #include <phimis/core/config.hpp>
 #include <phimis/core/divergence.hpp>
-#include <phimis/core/finite.hpp>
-#include <phimis/core/limits.hpp>
 #include <phimis/core/rule.hpp>
 #include <phimis/core/simplex_newton.hpp>
 
@@ -63,12 +61,6 @@ PHIMIS_HOST_DEVICE freedom freedom_of(const minimisation<Real>& wanted, int k, b
   return (silent && !in_prior) || (infinite && has_prior && !in_prior) ? freedom::floored : freedom::free;
 }
 
-/// Whether a number is a positive one of Real, too, but for its rounding.
-template <class Real>
-PHIMIS_HOST_DEVICE bool is_positive_as(double x) noexcept {
-  return is_finite(x) && x <= static_cast<double>(largest<Real>) && static_cast<Real>(x) > 0;
-}
-
 /// The unit of costs of m techniques in which nothing depends on theirs: what a sample costs at the start, where the prior
 /// is then in units of samples. Of equal costs exactly that cost.
 template <class Real>
@@ -90,18 +82,6 @@ PHIMIS_HOST_DEVICE bool has_prices(const minimisation<Real>& wanted, int m) noex
     if (wanted.costs[k] != wanted.costs[0]) return true;
   }
   return false;
-}
-
-/// The unit of f in which the samples of a prior, each of f = mean, have a score of at most one where powers of f/p would
-/// overflow otherwise. Beside such a prior rows are next to nothing.
-///
-/// falls: whether scores grow where f is small.
-template <class Real>
-PHIMIS_HOST_DEVICE void limit_mean(double& unit, double& mean, bool falls) noexcept {
-  if (falls ? mean >= 1 : mean <= 1) return;
-  if (!is_positive_as<Real>(unit / mean)) return;
-  unit /= mean;
-  mean = 1;
 }
 
 /// A minimum, and how good it is.

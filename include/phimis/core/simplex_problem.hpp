@@ -6,7 +6,6 @@
 #include <phimis/core/divergence.hpp>
 #include <phimis/core/divergence_at.hpp>
 #include <phimis/core/finite.hpp>
-#include <phimis/core/minimisation.hpp>
 #include <phimis/core/mixture_sums.hpp>
 #include <phimis/core/row_parts.hpp>
 
