@@ -473,3 +473,51 @@ TEMPLATE_TEST_CASE(
   with_each(phimis::tsallis{8});
   with_each(phimis::reversed<phimis::tsallis>{{3}});
 }
+
+TEST_CASE("A prior of 1.8e308 overflows no sum: it decides as one of 1e300 does") {
+  // 7 samples change the fractions by 1e-299 of themselves; cost times variance has its minimum elsewhere than at the start.
+  const auto with = [](const auto& divergence, auto techniques, double cost) {
+    constexpr int M = decltype(techniques)::value;
+    using Divergence = std::decay_t<decltype(divergence)>;
+    phimis::fractions<double, M> learnt[2];
+    rule_status status[2];
+    for (const int huge : {0, 1}) {
+      rule_options<double, M> options{};
+      for (int k = 0; k < M; ++k) options.start[k] = (k + 1) / (M * (M + 1) / 2.0);
+      options.floors = {};
+      options.costs[1] = cost;
+      options.prior = huge == 1 ? std::numeric_limits<double>::max() : 1e300;
+      phimis::exact_minimiser<Divergence, phimis::fixed_table<double, M, 8>> rule(divergence, options,
+                                                                                  control_variate::off);
+      for (int j = 0; j < 7; ++j) {
+        observation<double, M> sample{};
+        sample.f = 0.25 + 0.5 * j;
+        sample.q = 0.5 + 0.125 * j;
+        for (int k = 0; k < M; ++k) sample.pdfs[k] = 1 + (j * (k + 2)) % 5;
+        rule.observe(sample);
+      }
+      status[huge] = rule.update();
+      learnt[huge] = rule.fractions();
+      for (int k = 0; k < M && cost == 1; ++k) {
+        CHECK(std::fabs(rule.fractions()[k] - options.start[k]) < 8 * std::numeric_limits<double>::epsilon());
+      }
+    }
+    CAPTURE(M, cost);
+    CHECK(status[0] == status[1]);
+    // Sums of other sizes are rounded elsewhere.
+    for (int k = 0; k < M; ++k) CHECK(std::fabs(learnt[1][k] - learnt[0][k]) < 1e-12);
+  };
+  const auto with_each = [&](const auto& divergence, double cost) {
+    with(divergence, std::integral_constant<int, 2>(), cost);
+    with(divergence, std::integral_constant<int, 3>(), cost);
+  };
+  with_each(phimis::tsallis{0.01}, 1);
+  with_each(phimis::tsallis{0.5}, 1);
+  with_each(phimis::tsallis{3}, 1);
+  with_each(phimis::pearson_vajda{1.5}, 1);
+  with_each(phimis::reversed<phimis::pearson_vajda>{{1.5}}, 1);
+  with_each(phimis::one_sample_variance{}, 1);
+  with_each(phimis::one_sample_variance{}, 3);
+  with_each(phimis::multi_sample_variance{}, 1);
+  with_each(phimis::multi_sample_variance{}, 3);
+}

@@ -104,6 +104,12 @@ PHIMIS_HOST_DEVICE void limit_mean(double& unit, double& mean, bool falls) noexc
   mean = 1;
 }
 
+/// What sums over rows are scaled by beside a prior, and the prior, too: scores times a prior of 1e308 are no numbers.
+PHIMIS_HOST_DEVICE inline double scale_beside(double prior) noexcept {
+  constexpr double largest = 1e200;
+  return prior > largest ? largest / prior : 1;
+}
+
 /// φ(t) of a divergence at t = g/p(α) ≥ 0; the divergence is ∫ p φ(g/p) dx.
 template <class Divergence, class Real>
 PHIMIS_HOST_DEVICE Real phi_at(const Divergence& divergence, Real t) noexcept {

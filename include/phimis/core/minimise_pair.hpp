@@ -148,11 +148,12 @@ class pair_minimisation {
                                  wanted_.mass > 0 ? wanted_.mass : static_cast<double>(rows_.n),
                                  wanted_.variate == control_variate::on};
     pair_sums sums = sum_pair(divergence_, rows_, point, every);
-    sums.zeta *= scale_;
-    sums.slope *= scale_;
-    sums.lambda *= scale_;
+    const double beside = scale_beside(static_cast<double>(wanted_.prior));
+    sums.zeta *= beside * scale_;
+    sums.slope *= beside * scale_;
+    sums.lambda *= beside * scale_;
     if (rows_.n < 128) sums.exponent = 0;  // another evaluation costs less than logarithms
-    const double weight = static_cast<double>(wanted_.prior) / every;
+    const double weight = beside * static_cast<double>(wanted_.prior) / every;
     if (weight > 0) {
       const auto score_of = [&](double pi, double share) {
         if constexpr (local) {

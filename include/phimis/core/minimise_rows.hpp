@@ -16,6 +16,7 @@
 #include <phimis/core/simplex_problem.hpp>
 #include <phimis/core/variance_on_simplex.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <type_traits>
 
@@ -63,7 +64,12 @@ class row_minimisation {
     const Real inverse = 1 / (largest > smallest ? largest : smallest);
     unit_ = static_cast<double>(inverse);
     mean_ = detail::masses(rows, inverse, kappa_) / mass();
-    if (detail::is_variance<Divergence>::value && wanted.prior > 0) limit_mean<Real>(unit_, mean_, false);
+    if (detail::is_variance<Divergence>::value && wanted.prior > 0) {
+      limit_mean<Real>(unit_, mean_, false);
+      const double scale = std::sqrt(scale_beside(static_cast<double>(wanted.prior)));  // of f, whose square is meant
+      unit_ *= scale;
+      mean_ *= scale;
+    }
     constrain();
   }
 

@@ -146,7 +146,8 @@ class divergence_on_simplex {
         normalised_(normalised),
         unit_(unit),
         mean_(mean),
-        prior_(prior),
+        scale_(scale_beside(prior)),
+        prior_(scale_ * prior),
         shares_(prior_shares),
         lambda_(memory),
         raw_(lambda_ + 1),
@@ -156,7 +157,7 @@ class divergence_on_simplex {
 
   /// Adds price · Σ_k c_k a_k to the objective.
   PHIMIS_HOST_DEVICE void charge(double price, const Real* costs) noexcept {
-    price_ = price;
+    price_ = scale_ * price;
     costs_ = costs;
   }
 
@@ -176,6 +177,7 @@ class divergence_on_simplex {
     on_.at(theta);
     with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
                       [&](const auto& sums) { sums.gradient(lambda_); });
+    for (int i = 0; i < 2 * rows_.m + 1 && scale_ < 1; ++i) lambda_[i] *= scale_;
     const double weight = prior_ / every_;
     for (int k = 0; k < rows_.m && weight > 0; ++k) {
       const double a = on_.beta()[k] / kappa_[k];
@@ -194,6 +196,8 @@ class divergence_on_simplex {
     for (int a = 0; a < size; ++a) techniques_[a] = on_.technique(support[a]);
     with_mixture_sums(divergence_, rows_, on_.beta(), unit_, normalised_, every_,
                       [&](const auto& sums) { sums.hessian(techniques_, size, on_.fixed(), hessian_); });
+    const int order = size + (on_.fixed() != nullptr ? 1 : 0);
+    for (int i = 0; i < order * order && scale_ < 1; ++i) hessian_[i] *= scale_;
     add_prior(size);
     on_.pull_back(hessian_, support, size, hessian);
   }
@@ -248,6 +252,7 @@ class divergence_on_simplex {
   bool normalised_;
   double unit_;
   double mean_;
+  double scale_;  // of the whole objective
   double prior_;
   double price_ = 0;
   int every_ = 1;
