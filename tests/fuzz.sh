@@ -7,7 +7,7 @@ usage="usage: tests/fuzz.sh [SECONDS [SEED]]
        tests/fuzz.sh --runs RUNS [SEED]
 
   SECONDS   of all fuzzers together, 60 by default; at least one for each
-  RUNS      executions of each fuzzer, from the seeds alone: with a seed the same ones in every run on a machine
+  RUNS      executions of each fuzzer, from the seeds alone: with a seed the same ones in every run
   SEED      of what is tried; another one each time by default
   --help    this
 
@@ -57,23 +57,26 @@ failed=
 words=
 for name; do
   begin=$(date +%s)
-  grown=build/fuzz/corpus/$name
-  launcher=
   if [ -n "$runs" ]; then
-    limit=-runs=$runs
-    # libFuzzer learns from pointers that are compared, too: with other addresses it tries other inputs.
-    if setarch -R true 2>/dev/null; then launcher="setarch -R"; fi
+    # What is tried must depend neither on addresses, by which sets of pointers are ordered, nor on how a directory lists its files.
     grown=build/fuzz/corpus_of_runs/$name
     rm -rf "$grown"
+    seeds=build/fuzz/$name.seeds
+    (LC_ALL=C; printf '%s,' "tests/fuzz/corpus/$name"/*) | sed 's/,$//' >"$seeds"
+    launcher="env -i"
+    if setarch -R true 2>/dev/null; then launcher="env -i setarch -R"; fi
+    how="-runs=$runs -use_cmp=0 -use_memmem=0 -seed_inputs=@$seeds $grown"
   else
-    limit=-max_total_time=$share
+    grown=build/fuzz/corpus/$name
+    launcher=
+    how="-max_total_time=$share $grown tests/fuzz/corpus/$name"
   fi
   log=build/fuzz/$name.log
   mkdir -p "$grown"
   # A unit that takes 20 seconds is a finding. Long inputs say little that short ones do not.
-  # shellcheck disable=SC2086  # no word, or two
-  if $launcher "build/fuzz/tests/fuzz/fuzz_$name" -seed="$seed" "$limit" -reload=0 -timeout=20 -max_len=600 \
-    -print_final_stats=1 -artifact_prefix="$findings/$name-" "$grown" "tests/fuzz/corpus/$name" </dev/null >"$log" 2>&1
+  # shellcheck disable=SC2086  # words
+  if $launcher "build/fuzz/tests/fuzz/fuzz_$name" -seed="$seed" -reload=0 -timeout=20 -max_len=600 \
+    -print_final_stats=1 -artifact_prefix="$findings/$name-" $how </dev/null >"$log" 2>&1
   then
     result=clean
   else

@@ -105,6 +105,11 @@ void solve(const Divergence& divergence, byte_source& bytes) {
                     static_cast<int>(options.variate), "\nfractions ", found.fractions.transpose(), "\nresidual ",
                     found.residual, " gap ", found.gap);
   demand(invariants::off_simplex<double>(span(found.fractions), span(floors), span(start), held));
+  // Nothing known, no move; but a start below its floors is raised to them.
+  const bool told = found.status != rule_status::no_information && found.status != rule_status::infinite_divergence;
+  if (!told && (start.array() >= floors.array()).all() && found.fractions != start) {
+    demand(invariants::words("fractions left ", start.transpose(), " without information"));
+  }
   if constexpr (requires { true_phi_at(divergence, real(1)); } || phimis::has_exponent<Divergence>::value) {
     if (found.status != rule_status::updated || found.gap == phimis::infinity<double>) return;
     // A start below its floors is raised to them: only one that is not is compared with.
