@@ -5,6 +5,7 @@
 #include "true_score.hpp"
 
 #include <phimis/core/counts.hpp>
+#include <phimis/core/divergence_at.hpp>
 #include <phimis/core/minimise_rows.hpp>
 #include <phimis/core/rule.hpp>
 
@@ -148,6 +149,8 @@ class objective {
     const real least = std::pow(real(10), -2 * decades_of(divergence) / (sizeof(Real) == 4 ? 8 : 1));
     wide_ = wide({costs.begin(), costs.end()}, least) || wide(on_.u, least) || wide(on_.w, least) || wide(pi_, least);
     for (const auto& column : on_.y) wide_ = wide_ || wide(column, least);
+    // A fraction that a prior alone holds is no smaller than the prior, unless it is below what t = f/p may be.
+    wide_ = wide_ || (prior_ > 0 && prior_ < 1 / real(phimis::detail::largest_ratio<Real>));
   }
 
   /// Whether numbers are so far apart that their powers are no Reals, see `decades_of`: there only the simplex is promised.

@@ -10,7 +10,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <type_traits>
 
 namespace {
 
@@ -18,7 +20,15 @@ using namespace hard;
 using phimis::control_variate;
 using phimis::rule_status;
 
+const phimis::technique_set two_powers(power_of{0}, power_of{1});
 const phimis::technique_set powers(power_of{0}, power_of{1}, power_of{2});
+
+/// Two techniques, for which there are Newton's rules, and three.
+template <class Body>
+void for_two_and_three(const Body& body) {
+  body(two_powers);
+  body(powers);
+}
 
 /// Whether a rule looks at the sign of f: estimates have it, divergences do not.
 template <class Rule>
@@ -38,8 +48,8 @@ TEMPLATE_TEST_CASE("Where f is 0 on 99.9 % of the domain, the technique that is 
   for (const TestType start : {TestType(0), TestType(0.5), TestType(1)}) {
     const auto options = starting_at<TestType, 2>({{start, 1 - start}});
     for (auto& rule : exact_rules<TestType, 2>(options, control_variate::off)) {
-      CAPTURE(rule.name(), start, rule.fractions()[0]);
       const auto status = teach(rule, all);
+      CAPTURE(rule.name(), start, rule.fractions()[0]);
       if (rule.infinite_at_zero()) {
         CHECK(status == rule_status::infinite_divergence);
         CHECK(same(rule.fractions(), options.start));
@@ -63,7 +73,7 @@ TEST_CASE("Where f is 0 on 99.9 % of the domain estimates of every rule are unbi
       estimates.add(run.estimate);
     }
     CAPTURE(rule.name(), estimates.mean);
-    // |z| < 5: a false alarm in 6e-7, 66 of them.
+    // |z| < 5: a false alarm in 6e-7, 79 of them.
     CHECK(std::fabs(estimates.mean - 0.5) <= 5 * std::sqrt(estimates.variance() / 100));
   }
 }
@@ -71,99 +81,193 @@ TEST_CASE("Where f is 0 on 99.9 % of the domain estimates of every rule are unbi
 TEMPLATE_TEST_CASE("The sign of f changes nothing where |f| is learnt from, and -f nothing at all", "", float,
                    double) {
   const auto f = [](double x) { return std::cos(5 * x) + 0.3; };
-  auto plain = every_rule<TestType, 3>();
-  auto minus = plain;
-  auto magnitude = plain;
-  const auto all = drawn<TestType>(f, powers, 150);
-  auto negative = all;
-  auto positive = all;
-  for (auto& o : negative) o.f = -o.f;
-  for (auto& o : positive) o.f = std::fabs(o.f);
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    CAPTURE(plain[i].name());
-    teach(plain[i], all, 5);
-    teach(minus[i], negative, 5);
-    teach(magnitude[i], positive, 5);
-    CHECK(same(plain[i].fractions(), minus[i].fractions()));
-    if (!looks_at_the_sign(plain[i])) CHECK(same(plain[i].fractions(), magnitude[i].fractions()));
-  }
+  for_two_and_three([&](const auto& techniques) {
+    constexpr int M = std::decay_t<decltype(techniques)>::techniques;
+    auto plain = every_rule<TestType, M>();
+    auto minus = plain;
+    auto magnitude = plain;
+    const auto all = drawn<TestType>(f, techniques, 150);
+    auto negative = all;
+    auto positive = all;
+    for (auto& o : negative) o.f = -o.f;
+    for (auto& o : positive) o.f = std::fabs(o.f);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      CAPTURE(plain[i].name(), M);
+      teach(plain[i], all, 5);
+      teach(minus[i], negative, 5);
+      teach(magnitude[i], positive, 5);
+      CHECK(same(plain[i].fractions(), minus[i].fractions()));
+      if (!looks_at_the_sign(plain[i])) CHECK(same(plain[i].fractions(), magnitude[i].fractions()));
+    }
+  });
 }
+
+namespace {
+
+/// How far a Gauss rule of 20 points on panels of this length leaves an optimum, where f has its roots between panels.
+double off_by_quadrature(const any_divergence& divergence, double length) {
+  // A kink where |f| = p(α) is inside a panel, whose nodes are .077 lengths apart at most. With s like |x − x_0|^{k−1} there,
+  // ζ is off by that gap to the power k; five for the slope of |f|/p and four kinks.
+  const double k = divergence.steps                         ? 1
+                   : divergence.name == "Pearson-Vajda 1.5" ? 1.5
+                   : divergence.name == "Pearson-Vajda 3"   ? 3
+                                                            : 0;
+  if (k > 0) return 5 * std::pow(0.077 * length, k);
+  // Otherwise s is smooth between the roots, near which it is |x − root|^β: the rule is off by (length/20²)^{1 + β}, ten for
+  // four ends and the slope of ζ. Of whole β it is smooth there, too: left are the solver's 1e-13 over the slope of ζ.
+  const double beta = divergence.power ? divergence.exponent : 2;
+  return 1e-11 + (beta == std::floor(beta) ? 0 : 10 * std::pow(length / 400, 1 + beta));
+}
+
+}  // namespace
 
 TEST_CASE("An integrand of both signs has the divergences of its magnitude by quadrature, and its own variance") {
   const auto f = [](double x) { return std::cos(5 * x) + 0.3; };
-  const phimis::technique_set pair(power_of{0}, power_of{1});
+  // Both techniques are needed: with p_2 = 2x in place of 2(1 − x) the first had all, and there were no digits to compare.
+  const phimis::technique_set pair(power_of{0}, power_of{-1});
   const double root = std::acos(-0.3) / 5;
   const double second = (2 * std::acos(-1.0) - std::acos(-0.3)) / 5;
   const phimis::analysis::problem on(f, pair, phimis::interval(0, 1), {root, second});
+  const double length = (second - root) / 20;  // of the longest panel
   for (auto& rule : exact_rules<double, 2>(phimis::without_floors<double, 2>())) {
     if (rule.infinite_at_zero()) continue;  // f has roots: integrals near them diverge
     const auto wanted = rule.divergence()->optimum(on, phimis::without_floors<double, 2>());
-    CAPTURE(rule.name(), wanted.alpha[0], wanted.error);
     teach(rule, quadrature(f, pair, {0, root, second, 1}));
-    // |f| = |x − root|^γ is no polynomial: quadrature is off by a panel's share of it, 1/20^{1 + γ}.
-    CHECK(apart(rule.fractions(), wanted.alpha) <= 1e-2);
+    const double allowed = off_by_quadrature(*rule.divergence(), length);
+    CAPTURE(rule.name(), rule.fractions()[0], wanted.alpha[0], wanted.error, allowed);
+    CHECK(wanted.alpha[0] > 0.2);
+    CHECK(wanted.alpha[0] < 0.5);
+    CHECK(apart(rule.fractions(), wanted.alpha) <= allowed + wanted.error);
   }
 }
 
 TEMPLATE_TEST_CASE("Batches of zeros change no fraction of any rule, and what comes after them does", "", float,
                    double) {
-  auto options = phimis::rule_options<TestType, 3>{};
-  options.start = {{TestType(0.25), TestType(0.25), TestType(0.5)}};
-  const auto zeros = drawn<TestType>([](double) { return 0; }, powers, 30);
-  const auto good = drawn<TestType>([](double x) { return 0.3 + x * x * x; }, powers, 300);
-  for (auto& rule : every_rule<TestType, 3>(options)) {
-    CAPTURE(rule.name());
-    for (int batch = 0; batch < 3; ++batch) {
-      teach(rule, zeros, 1);
-      CHECK(same(rule.fractions(), options.start));
-      if (rule.name() == "fixed") continue;
-      CHECK(rule.status() ==
-            (rule.infinite_at_zero() ? rule_status::infinite_divergence : rule_status::no_information));
+  for_two_and_three([](const auto& techniques) {
+    constexpr int M = std::decay_t<decltype(techniques)>::techniques;
+    auto options = phimis::rule_options<TestType, M>{};
+    options.start = phimis::fractions<TestType, M>{};
+    for (int k = 0; k < M; ++k) options.start[k] = k == M - 1 ? TestType(0.5) : TestType(0.5) / (M - 1);
+    options.start[0] -= TestType(0.125);
+    options.start[M - 1] += TestType(0.125);
+    const auto zeros = drawn<TestType>([](double) { return 0; }, techniques, 30);
+    const auto good = drawn<TestType>([](double x) { return 0.3 + x * x * x; }, techniques, 300);
+    for (auto& rule : every_rule<TestType, M>(options)) {
+      CAPTURE(rule.name(), M);
+      for (int batch = 0; batch < 3; ++batch) {
+        teach(rule, zeros, 1);
+        CHECK(same(rule.fractions(), options.start));
+        if (rule.name() == "fixed") continue;
+        CHECK(rule.status() ==
+              (rule.infinite_at_zero() ? rule_status::infinite_divergence : rule_status::no_information));
+      }
+      CHECK(rule.counters().zero == 90);
+      teach(rule, good, 1);
+      // A rule of one batch has forgotten the zeros, and with them that its divergence was infinite.
+      const bool remembers = rule.infinite_at_zero() && rule.how() == way::at_once;
+      if (rule.name() != "fixed" && !remembers) CHECK_FALSE(same(rule.fractions(), options.start));
     }
-    CHECK(rule.counters().zero == 90);
-    teach(rule, good, 1);
-    if (rule.name() != "fixed" && !rule.infinite_at_zero()) CHECK_FALSE(same(rule.fractions(), options.start));
-  }
+  });
 }
 
 TEST_CASE("A run in which every sample is 0 says so under every rule, and has no error bar") {
-  for (const auto& rule : every_rule<double, 3>()) {
-    const auto run = phimis::integrate([](double) { return 0.0; }, powers,
-                                       {.budget = 40, .iterations = 4, .growth = 4}, rule, phimis::square_root{});
-    CAPTURE(rule.name());
-    CHECK(run.status == phimis::integration_status::all_zero);
-    CHECK(run.estimate == 0);
-    CHECK_FALSE(phimis::is_finite(run.standard_error));
-    CHECK(same(run.fractions, phimis::equal_fractions<double, 3>()));
-  }
+  for_two_and_three([](const auto& techniques) {
+    constexpr int M = std::decay_t<decltype(techniques)>::techniques;
+    for (const auto& rule : every_rule<double, M>()) {
+      const auto run = phimis::integrate([](double) { return 0.0; }, techniques,
+                                         {.budget = 40, .iterations = 4, .growth = 4}, rule, phimis::square_root{});
+      CAPTURE(rule.name(), M);
+      CHECK(run.status == phimis::integration_status::all_zero);
+      CHECK(run.estimate == 0);
+      CHECK_FALSE(phimis::is_finite(run.standard_error));
+      CHECK(same(run.fractions, phimis::equal_fractions<double, M>()));
+    }
+  });
 }
+
+namespace {
+
+/// α_1 after one step for techniques that reach nothing in common, where t = a_k/α_k: ζ = s_1 − s_2 over its slope.
+template <class Real>
+double newton_step(double beta, const phimis::fractions<Real, 2>& from, const phimis::fractions<double, 2>& parts,
+                   const phimis::per_technique<Real, 2>& floors, const std::string& name) {
+  double s[2];
+  double slope = 0;
+  for (int k = 0; k < 2; ++k) {
+    const double t = parts[k] / static_cast<double>(from[k]);
+    const double power = std::pow(t, beta);
+    s[k] = beta == 0 ? std::log(t) : beta > 0 ? power : -power;
+    slope += (beta == 0 ? 1 : std::fabs(beta) * power) / static_cast<double>(from[k]);
+  }
+  const double start = static_cast<double>(from[0]);
+  const double first = start + (s[0] - s[1]) / slope;
+  const double edge = first < 0.5 ? static_cast<double>(floors[0]) : 1 - static_cast<double>(floors[1]);
+  if (first < 0.5 ? first >= edge : first <= edge) return first;
+  return name.find("Newton, ") == 0 ? (start + edge) / 2 : edge;  // the safeguard, or the nearest
+}
+
+}  // namespace
 
 TEMPLATE_TEST_CASE("A technique that is silent for five batches is heard in the sixth", "", float, double) {
-  // Technique 3 reaches only what no sample falls into at first; then it alone has a peak.
-  const auto early = drawn<TestType>([](double x) { return 1 + x; },
-                                     phimis::technique_set(power_of{0}, power_of{1}, uniform_on{2, 3}), 60);
-  observations<TestType, 3> silent;
-  observations<TestType, 3> loud;
-  for (const auto& o : early) {
-    if (o.technique != 2) silent.push_back(o);
-    loud.push_back(o);
-    if (o.technique == 2) loud.back().f = TestType(5);
-  }
-  for (auto& rule : every_rule<TestType, 3>()) {
-    CAPTURE(rule.name());
-    for (int batch = 0; batch < 5; ++batch) teach(rule, silent, 1);
-    const auto before = rule.fractions();
-    for (int batch = 0; batch < 5; ++batch) teach(rule, loud, 1);
-    // |f| at the peak is some four times that elsewhere: what minimises anything wants more of it.
-    if (rule.how() == way::otherwise) continue;
-    if (rule.divergence()->variance) continue;  // V[F]: the peak is constant, and one technique's counts are decided
-    CHECK(rule.fractions()[2] > before[2]);
-    CHECK(rule.status() == rule_status::updated);
-  }
+  // The last technique reaches only what no sample falls into at first. Then f = Σ a_k p_k, so that p ∝ a is best for every
+  // divergence, whatever the rows before: f/p is constant.
+  const auto check = [](const auto& techniques, const auto& parts) {
+    constexpr int M = std::decay_t<decltype(techniques)>::techniques;
+    const auto f = [&](double x) {
+      const auto p = techniques.pdfs(x);
+      double sum = 0;
+      for (int k = 0; k < M; ++k) sum += parts[k] * p[k];
+      return sum;
+    };
+    phimis::fractions<double, M> wanted{};
+    double total = 0;
+    for (const double part : parts) total += part;
+    for (int k = 0; k < M; ++k) wanted[k] = parts[k] / total;
+    const auto loud = drawn<TestType>(f, techniques, 60);
+    observations<TestType, M> silent;
+    for (const auto& o : loud) {
+      if (o.technique != M - 1) silent.push_back(o);
+    }
+    // Where φ is flat around t = 1 a fraction is known to the root of the last digit.
+    const double flat = 4 * std::sqrt(static_cast<double>(std::numeric_limits<TestType>::epsilon()));
+    for (auto& rule : every_rule<TestType, M>()) {
+      const bool linear = rule.name().find("linear") == 0;
+      if (rule.how() == way::otherwise && !linear) continue;
+      for (int batch = 0; batch < 5; ++batch) teach(rule, silent, 1);
+      const auto before = rule.fractions();
+      teach(rule, loud, 1);
+      const auto after = rule.fractions();
+      CAPTURE(rule.name(), M, before[M - 1], after[0], after[M - 1]);
+      const bool variance = rule.divergence() && rule.divergence()->variance;
+      if (rule.how() != way::by_steps) {
+        CHECK(static_cast<double>(before[M - 1]) == Approx(1.0 / M).epsilon(4 * flat * flat));
+        CHECK(rule.status() == (variance ? rule_status::local : rule_status::updated));
+        // V[F] is 0 wherever the parts in reach of each other are as they are wanted: two of three techniques.
+        if (!variance) CHECK(apart(after, wanted) <= flat);
+        if (variance && M == 3) CHECK(std::fabs(after[0] / after[1] - wanted[0] / wanted[1]) <= 4 * flat);
+      } else if (!variance) {
+        CHECK(rule.status() == rule_status::updated);
+        if constexpr (M == 2) {
+          // The sums of 60 rows, rounded, over a slope of |β|.
+          const double beta = rule.divergence()->exponent;
+          const double rounded = 60 * std::numeric_limits<TestType>::epsilon() / (beta == 0 ? 1 : std::fabs(beta));
+          const double first = newton_step(beta, before, wanted, rule.options().floors, rule.name());
+          CAPTURE(first);
+          CHECK(std::fabs(static_cast<double>(after[0]) - first) <= rounded);
+        } else {
+          // The streaming rule alone, from the floor at which the silence left the technique.
+          CHECK(after[M - 1] > before[M - 1]);
+          CHECK(after[M - 1] < static_cast<TestType>(wanted[M - 1]));
+        }
+      }
+    }
+  };
+  check(phimis::technique_set(power_of{1}, uniform_on{2, 3}), phimis::per_technique<double, 2>{{1, 5}});
+  check(phimis::technique_set(power_of{0}, power_of{1}, uniform_on{2, 3}),
+        phimis::per_technique<double, 3>{{1, 0.5, 5}});
 }
 
-TEST_CASE(
-    "A silent technique keeps its fraction, and afterwards the exact rules know what they know without the silence") {
+TEST_CASE("A silent technique keeps its fraction, and updates on the way do not matter to the exact rules") {
   const auto f = [](double x) { return 0.3 + x * x * x; };
   const auto all = drawn(f, powers, 240);
   auto silent = drawn(f, powers, 60);
@@ -200,18 +304,21 @@ TEST_CASE("A technique that alone sees an outlier of 1e12 has the fraction of th
 }
 
 TEMPLATE_TEST_CASE("One outlier of 1e12 times the mean leaves no rule without a number", "", float, double) {
-  for (const int at : {0, 31, 59}) {
-    auto all = drawn<TestType>([](double x) { return 1 + x; }, powers, 60);
-    all[static_cast<std::size_t>(at)].f *= TestType(1e12);
-    for (const auto variate : {control_variate::on, control_variate::off}) {
-      for (auto& rule : every_rule<TestType, 3>({}, variate)) {
-        CAPTURE(rule.name(), at, static_cast<int>(variate));
-        teach(rule, all, 5);
-        if (!rule.divergence() || rule.divergence()->steps) continue;
-        CHECK((rule.status() == rule_status::updated || rule.status() == rule_status::local));
+  for_two_and_three([](const auto& techniques) {
+    constexpr int M = std::decay_t<decltype(techniques)>::techniques;
+    for (const int at : {0, 31, 59}) {
+      auto all = drawn<TestType>([](double x) { return 1 + x; }, techniques, 60);
+      all[static_cast<std::size_t>(at)].f *= TestType(1e12);
+      for (const auto variate : {control_variate::on, control_variate::off}) {
+        for (auto& rule : every_rule<TestType, M>({}, variate)) {
+          CAPTURE(rule.name(), M, at, static_cast<int>(variate));
+          teach(rule, all, 5);
+          if (!rule.divergence() || rule.divergence()->steps) continue;
+          CHECK((rule.status() == rule_status::updated || rule.status() == rule_status::local));
+        }
       }
     }
-  }
+  });
 }
 
 TEST_CASE("With an outlier of 1e12 the condition of optimality holds in long double") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Defects that a review of the solver for many techniques found, each kept as a test of what must hold.
+// Many techniques: defects that a review of their solver found, each kept as a test of what must hold, and 16 and 64 techniques
+// whose fractions are known.
 #include "catch.hpp"
 #include "divergences.hpp"
 #include "random.hpp"
@@ -12,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <string>
 #include <type_traits>
 
 namespace {
@@ -124,7 +127,9 @@ TEMPLATE_TEST_CASE("A prior holds the fractions of a variance, with and without 
   minimiser<TestType, 3> rule(TestType{}, options);
   observe_pair(rule, 0, 1, true);
   rule.update();
-  for (int k = 0; k < 3; ++k) CHECK(std::fabs(rule.fractions()[k] - options.start[k]) <= 1e-3);
+  // π²/α² of weight 1e6 against G_k <= max t² < 5 of weight 300: a fraction moves by half of their ratio.
+  const double share = 300 / 1e6 * 5 / 2;
+  for (int k = 0; k < 3; ++k) CHECK(std::fabs(rule.fractions()[k] - options.start[k]) <= share * options.start[k]);
 
   // With costs the prior is part of the variance: C Σ π²/α is least at α ∝ π/√c.
   options.costs = {{1, 4, 16}};
@@ -133,7 +138,11 @@ TEMPLATE_TEST_CASE("A prior holds the fractions of a variance, with and without 
   priced.update();
   const double sum = 0.2 + 0.35 + 0.025;
   const double wanted[] = {0.2 / sum, 0.35 / sum, 0.025 / sum};
-  for (int k = 0; k < 3; ++k) CHECK(std::fabs(priced.fractions()[k] - wanted[k]) <= 0.01);
+  for (int k = 0; k < 3; ++k) {
+    // π²/α² is no longer 1.
+    const double of_prior = wanted[k] / options.start[k] * (wanted[k] / options.start[k]);
+    CHECK(std::fabs(priced.fractions()[k] - wanted[k]) <= share * std::max(of_prior, 1.0) * wanted[k]);
+  }
 }
 
 namespace {
@@ -275,7 +284,8 @@ TEST_CASE("The error of the oracle is that of quadrature where f changes sign") 
 namespace {
 
 /// Block i of m/2 has the technique 2i to itself; technique 2i + 1 wastes half of its samples where f is 0. So it has nothing
-/// to give: G_{2i+1} = (s(t_i) + s(0))/2 <= G_{2i}, and α_{2i} is as the integral of f over block i: c_i = 1, 2, 3, …
+/// to give: G_{2i+1} = (s(t_i) + s(0))/2 <= G_{2i}, and α_{2i} is as the integral of f over block i: c_i = 1, 2, 3, … All
+/// pdfs have the sample mass 1 and t_i = 1 there, where alone total variation, too, has its minimum.
 struct blocks {
   Eigen::VectorXd f, q, wanted;
   Eigen::MatrixXd pdfs;
@@ -286,7 +296,8 @@ struct blocks {
       const int i = j % half;
       const bool waste = j >= 2 * m;
       f[j] = waste ? 0 : i + 1;
-      q[j] = waste ? 0.5 : 1.0 / half;  // m points there, four in each block: Σ 1/q is the same for each
+      // Four points in each block, m where f is 0; n = 3m = 6 half: Σ p_{2i}/q = 4 (3/2) half, Σ p_{2i+1}/q half of that and ½ m 3.
+      q[j] = waste ? 1.0 / 3 : 2.0 / 3 / half;
       for (int k = 0; k < half; ++k) pdfs(j, 2 * k + 1) = waste ? 0.5 : 0;
       if (waste) continue;
       pdfs(j, 2 * i) = 1;
@@ -295,6 +306,17 @@ struct blocks {
     for (int i = 0; i < half; ++i) wanted[2 * i] = 2.0 * (i + 1) / (half * (half + 1));
   }
 };
+
+/// How far fractions may be off where t = 1 at the optimum: α_{2i} = c_i/t_i, and s(t_i) is the same for each up to the residual and
+/// the rounding of G, some ten ε. Where s is a power t is 1 up to that over β >= .1; s = ±3 (t − 1)² of |t − 1|³ makes a root of it;
+/// a kink is flat within its width, which ends at 1e-6, in float at 1e-4.
+template <class Real, class Divergence>
+double known_to(const std::string& name, const Divergence& divergence, double residual, const blocks& on) {
+  const double of_score = residual + 10.0 * std::numeric_limits<Real>::epsilon();
+  const double width = std::is_same_v<Real, float> ? 1e-4 : 1e-6;
+  const bool flat = name.find("Vajda 3") != std::string::npos;
+  return on.wanted.maxCoeff() * (has_kink(divergence) ? width : flat ? std::sqrt(of_score) : of_score / 0.1);
+}
 
 }  // namespace
 
@@ -312,29 +334,36 @@ TEST_CASE("Of 16 and of 64 techniques the useless half has nothing, the others w
           CHECK(found.status == rule_status::infinite_divergence);
           continue;
         }
-        // g = c t: where φ is flat, of |t − 1|³, α is known to the root of the residual's 1e-10; kinks are rounded off within 1e-6.
         const double error = (found.fractions - on.wanted).cwiseAbs().maxCoeff();
         CHECK(found.status == rule_status::updated);
-        CHECK(error <= (has_kink(divergence) ? 1e-5 : 1e-9));
+        CHECK(error <= known_to<double>(name, divergence, found.residual, on));
         for (int k = 1; k < m; k += 2) CHECK(found.fractions[k] == 0);
       }
     });
   }
 }
 
-TEST_CASE("In float the useless half of 16 techniques has nothing") {
-  const blocks on(16);
+TEMPLATE_TEST_CASE_SIG("In float the useless half of 16 and of 64 techniques has nothing, from a vertex too", "", ((int M), M), 16,
+                       64) {
+  const blocks on(M);
   for_each_divergence([&](const char* name, const auto& divergence) {
     if (phimis::infinite_at_zero(divergence)) return;
-    minimiser<std::decay_t<decltype(divergence)>, 16, float> rule(divergence, phimis::without_floors<float, 16>(),
-                                                                  control_variate::off);
-    for (int j = 0; j < on.f.size(); ++j) {
-      phimis::observation<float, 16> o{static_cast<float>(on.f[j]), {}, static_cast<float>(on.q[j]), 0};
-      for (int k = 0; k < 16; ++k) o.pdfs[k] = static_cast<float>(on.pdfs(j, k));
-      rule.observe(o);
+    for (const bool vertex : {false, true}) {
+      auto options = phimis::without_floors<float, M>();
+      for (int k = 0; k < M && vertex; ++k) options.start[k] = k == 1 ? 1.0F : 0.0F;
+      minimiser<std::decay_t<decltype(divergence)>, M, float> rule(divergence, options, control_variate::off);
+      for (int j = 0; j < on.f.size(); ++j) {
+        phimis::observation<float, M> o{static_cast<float>(on.f[j]), {}, static_cast<float>(on.q[j]), 0};
+        for (int k = 0; k < M; ++k) o.pdfs[k] = static_cast<float>(on.pdfs(j, k));
+        rule.observe(o);
+      }
+      CAPTURE(name, vertex);
+      CHECK(rule.update() == rule_status::updated);
+      const double allowed = known_to<float>(name, divergence, rule.residual(), on);
+      for (int k = 0; k < M; ++k) {
+        CHECK(std::fabs(rule.fractions()[k] - on.wanted[k]) <= allowed);
+        if (k % 2 == 1) CHECK(rule.fractions()[k] == 0);
+      }
     }
-    CAPTURE(name);
-    CHECK(rule.update() == rule_status::updated);
-    for (int k = 0; k < 16; ++k) CHECK(std::fabs(rule.fractions()[k] - on.wanted[k]) <= 1e-3);
   });
 }

@@ -3,6 +3,7 @@
 #include "any_rule.hpp"
 #include "cases.hpp"
 #include "catch.hpp"
+#include "divergences.hpp"
 
 #include <phimis/estimator/batch.hpp>
 #include <phimis/integrate.hpp>
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace {
@@ -30,6 +32,19 @@ struct tilted {
   }
 };
 
+/// γ of s ∝ t^γ as t → 0: β of a power, 1 − k of a reversed Pearson–Vajda divergence, which `exponent` leaves out; 0 where s(0)
+/// is finite or s grows like log t.
+double growth_at_zero(const any_divergence& divergence) {
+  double growth = 0;
+  for_each_divergence([&](const char* name, const auto& of) {
+    if (divergence.name != name || !divergence.infinite_at_zero) return;
+    const auto size = [&](long double t) { return std::fabs(true_score_at(of, t).value); };
+    // Of log t what is left is log(230/253)/log(1e10) = −.004.
+    growth = static_cast<double>(std::log(size(1e-100L) / size(1e-110L)) / std::log(1e10L));
+  });
+  return growth;
+}
+
 /// How near to the oracle fractions may be expected that were learnt on another quadrature of the same integrals.
 ///
 /// Both resolve smooth integrands to rounding, which is ε of G_k: α is as far off as that over the slope of ζ, some hundred ε;
@@ -42,19 +57,20 @@ double tolerance(const any_divergence& divergence) {
   return is_float<Real> ? 1e-4 : 1e-9;
 }
 
-/// The exact rules on quadrature observations against the oracle, from several starts.
+/// The exact rules on quadrature observations against the oracle, from several starts; not by divergences whose score grows like
+/// t^least_growth or faster at t = 0.
 template <class Real, class Integrand, class Techniques>
 void check_oracle(const Integrand& f, const Techniques& techniques, const std::vector<double>& edges,
                   control_variate variate = control_variate::on,
                   phimis::analysis::normalisation promise = phimis::analysis::normalisation::required,
-                  double least_exponent = -1e300) {
+                  double least_growth = -1e300) {
   const std::vector<double> inner(edges.begin() + 1, edges.end() - 1);
   const phimis::analysis::problem on(f, techniques, phimis::interval(edges.front(), edges.back()), inner, promise);
   const auto all = quadrature<Real>(f, techniques, edges);
   const auto rules = exact_rules<Real, 2>({}, variate);
   for (std::size_t i = 0; i < rules.size(); ++i) {
     const any_divergence& divergence = *rules[i].divergence();
-    if (divergence.infinite_at_zero && divergence.exponent <= least_exponent) continue;
+    if (growth_at_zero(divergence) <= least_growth + 1e-2) continue;
     auto wanted = divergence.optimum(on, phimis::without_floors<double, 2>());
     for (const double first : {0.0, 0.5, 1.0}) {
       const auto options = starting_at<Real, 2>({{static_cast<Real>(first), static_cast<Real>(1 - first)}});
@@ -63,6 +79,8 @@ void check_oracle(const Integrand& f, const Techniques& techniques, const std::v
       const auto status = teach(rule, all);
       CAPTURE(rule.name(), first, wanted.alpha[0], rule.fractions()[0]);
       CHECK(status == (divergence.variance ? rule_status::local : rule_status::updated));
+      // An oracle that does not know must not excuse everything.
+      CHECK(wanted.error <= tolerance<Real>(divergence));
       CHECK(apart(rule.fractions(), wanted.alpha) <= tolerance<Real>(divergence) + wanted.error);
     }
   }
@@ -70,19 +88,29 @@ void check_oracle(const Integrand& f, const Techniques& techniques, const std::v
 
 }  // namespace
 
-TEST_CASE(
-    "Pdfs that are 1e-6 apart have the better one found by every divergence, 1e-12 apart at least not the worse") {
-  // f/p_2 and p_1/p_2 rise: technique 1 alone is best, by a difference of G of .1 δ.
+TEMPLATE_TEST_CASE(
+    "Pdfs that are hardly apart have the better one found by every divergence, in the last digits at least not the worse",
+    "", float, double) {
+  // f/p_2 and p_1/p_2 rise: technique 1 alone is best, by a difference of G of .1 δ of chi squared, .01 δ where s itself is
+  // nearly flat; the slope of V[F] is −∫f²(p_1 − p_2) = −½δ.
+  using Real = TestType;
   const auto f = [](double x) { return 1 + x; };
-  for (const double delta : {1e-6, 1e-12}) {
+  // 1e-12 apart is the same in float, and in double no more than the rounding of G where s is nearly flat.
+  for (const double delta : {is_float<Real> ? 1e-2 : 1e-6, 1e-12}) {
     const phimis::technique_set pair(tilted{delta}, tilted{-delta});
-    for (auto& rule : exact_rules<double, 2>(starting_at<double, 2>({{0.4, 0.6}}), control_variate::off)) {
-      if (rule.divergence()->variance) continue;
-      CAPTURE(rule.name(), delta);
-      CHECK(teach(rule, quadrature(f, pair, {0, 1}, 3)) == rule_status::updated);
-      const double first = rule.fractions()[0];
-      // Where s itself is nearly flat, .1 δ is rounding of G.
-      CHECK((first == 1 || (delta < 1e-9 && first == 0.4)));
+    const auto options = starting_at<Real, 2>({{Real(0.4), Real(0.6)}});
+    for (auto& rule : exact_rules<Real, 2>(options, control_variate::off)) {
+      const auto status = teach(rule, quadrature<Real>(f, pair, {0, 1}, 3));
+      CAPTURE(rule.name(), delta, rule.fractions()[0]);
+      CHECK(status == (rule.divergence()->variance ? rule_status::local : rule_status::updated));
+      const bool left = same(rule.fractions(), options.start);
+      if (delta > 1e-9) {
+        CHECK(rule.fractions()[0] == 1);
+      } else if (is_float<Real>) {
+        CHECK(left);
+      } else {
+        CHECK((left || rule.fractions()[0] == 1));
+      }
     }
   }
 }
@@ -121,11 +149,16 @@ TEMPLATE_TEST_CASE("Of two identical pdfs and another, the two share what one wo
   auto of_pair = exact_rules<TestType, 2>(phimis::without_floors<TestType, 2>());
   auto of_three = exact_rules<TestType, 3>(phimis::without_floors<TestType, 3>());
   for (std::size_t i = 0; i < of_pair.size(); ++i) {
-    CAPTURE(of_pair[i].name(), of_pair[i].fractions()[1], of_three[i].fractions()[2]);
     teach(of_pair[i], quadrature<TestType>(f, pair, {0, 1}, 3));
     teach(of_three[i], quadrature<TestType>(f, three, {0, 1}, 3));
-    // The kinks of three techniques are rounded off within 1e-6, of which steps of 60 nodes make 1/60.
-    const double allowed = of_pair[i].divergence()->steps ? 0.05 : is_float<TestType> ? 1e-3 : 1e-6;
+    CAPTURE(of_pair[i].name(), of_pair[i].fractions()[1], of_three[i].fractions()[2]);
+    // A step lies between nodes, of which the largest has .0255, .153 of a panel's half, times p <= 2. The kink of three
+    // techniques is rounded off within `width`. Else ζ is known to some ten ε of λ, each solution's, and its slope is
+    // β ∫(2x − 1)²/(x + ½) dx ≈ .4 β of it, β >= .1.
+    const bool kink = of_pair[i].name().find("Vajda 1.5") != std::string::npos;
+    const double width = is_float<TestType> ? 1e-4 : 1e-6;
+    const double digits = 1000.0 * std::numeric_limits<TestType>::epsilon();
+    const double allowed = of_pair[i].divergence()->steps ? 0.05 : kink ? width : digits;
     CHECK(std::fabs(static_cast<double>(of_pair[i].fractions()[1] - of_three[i].fractions()[2])) <= allowed);
   }
 }
@@ -142,7 +175,7 @@ TEMPLATE_TEST_CASE("A technique whose variance is infinite gets the fractions of
 }
 
 TEST_CASE("An estimate is honest where one technique has an infinite variance") {
-  // Floors keep p(α) >= .01: f/p <= 200. |z| < 5 by the standard error of 20000 samples.
+  // Floors keep p(α) >= .01: f/p <= 200. |z| < 5 by the standard error of 2000 samples.
   const phimis::technique_set pair(power_of{5}, power_of{0});
   const auto f = [](double u) { return 2 * u; };
   for (const auto& rule : every_rule<double, 2>()) {
@@ -229,9 +262,10 @@ TEMPLATE_TEST_CASE("A delta-like pdf beside a uniform one is weighed right by ev
       if (rule.divergence()->variance) continue;            // 0 at any fractions: each part has its technique
       teach(rule, drawn<TestType>(f, pair, 200));
       CAPTURE(rule.name(), share, rule.fractions()[0]);
+      // t = 1 up to 2 ε; s and its sum up to ε each, which is t up to 10 ε where s = t^.1, up to √ε where φ is flat.
       const bool flat = rule.name().find("Vajda 3") != std::string::npos;
       CHECK(apart(rule.fractions(), phimis::fractions<double, 2>{{share, 1 - share}}) <=
-            30 * std::max(flat ? std::sqrt(epsilon) : 10 * epsilon, 1e-12));
+            (flat ? std::sqrt(epsilon) : 30 * epsilon));
     }
   }
 }
@@ -249,7 +283,6 @@ TEST_CASE("The integral of a delta on a plane is exact once the mixture is learn
 
 TEMPLATE_TEST_CASE("A defective pdf has the fractions of the oracle under every divergence, lost samples or not", "",
                    float, double) {
-  const phimis::technique_set pair(uniform_on{0, 0.5}, power_of{1});
   struct half {  // of which the upper half is lost
     double pdf(double x) const { return x < 0.5 ? power_of{0}.pdf(x) : 0; }
     double sample(double (*next)()) const { return next(); }
@@ -257,7 +290,7 @@ TEMPLATE_TEST_CASE("A defective pdf has the fractions of the oracle under every 
   const phimis::technique_set lossy(half{}, power_of{1});
   const auto f = [](double x) { return 1 + x * x; };
   check_oracle<TestType>(f, lossy, {0, 0.5, 1}, control_variate::off, phimis::analysis::normalisation::defective);
-  // As many samples again, all lost: sums are the same, and n is that of all.
+  // As many samples again, all lost: sums are the same to the last bit, for n and 1/q are twice what they were.
   auto all = quadrature<TestType>(f, lossy, {0, 0.5, 1});
   auto with_lost = all;
   for (auto& o : with_lost) o.q /= 2;
@@ -271,7 +304,7 @@ TEMPLATE_TEST_CASE("A defective pdf has the fractions of the oracle under every 
     if (with[i].infinite_at_zero()) {
       CHECK(status == rule_status::infinite_divergence);
     } else {
-      CHECK(apart(with[i].fractions(), without[i].fractions()) <= (is_float<TestType> ? 1e-5 : 1e-12));
+      CHECK(same(with[i].fractions(), without[i].fractions()));
     }
   }
 }

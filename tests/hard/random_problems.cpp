@@ -147,6 +147,17 @@ class true_problem {
     return sum;
   }
 
+  /// The sizes of the terms of that, which may be far above λ: where p ≪ u a reversed φ is u, p |s| only p.
+  real size(const reals& p, const reals& other) const {
+    real sum = 0;
+    for (std::size_t j = 0; j < n_; ++j) {
+      const real of_p = std::fabs(primitive(divergence_, u_[j], p[j]));
+      const real of_other = std::fabs(primitive(divergence_, u_[j], other[j]));
+      sum += w_[j] * (of_p + of_other + u_[j] + p[j] + other[j]);
+    }
+    return sum;
+  }
+
   /// The largest KKT residual, relative.
   real residual(const reals& alpha, const point& here) const {
     if (!here.reaches) return std::numeric_limits<real>::infinity();
@@ -337,17 +348,21 @@ void solve(const std::string& name, const D& divergence, const random_problem& o
   const auto here = exact.at(alpha);
   const real residual = exact.residual(alpha, here);
   INFO("KKT residual " << static_cast<double>(residual) << ", gap " << static_cast<double>(here.gap / here.lambda));
+  // What `updated` says of a double.
   CHECK(residual <= 1e-10L);
   CHECK(found.residual <= 1e-10);
   ++count.solved;
 
-  // Wherever the multiplicative step is, its minimum is within its gap: ours must be there, and never above it.
+  // Wherever the multiplicative step is, its minimum is within its gap, and ours is within its own, which the residual makes some
+  // 1e-10. A mixture of 64 terms, its power and their sum are rounded some hundred times.
   const reached theirs = multiplicative(exact, static_cast<std::size_t>(on.rows()));
-  const double above = static_cast<double>(exact.difference(here.p, theirs.p) / here.lambda);
-  INFO("objective above that of the multiplicative step by " << above << ", whose gap is "
-                                                             << static_cast<double>(theirs.gap / here.lambda));
-  CHECK(above <= 1e-6);
-  CHECK(above >= -1e-10 - static_cast<double>(theirs.gap / here.lambda));
+  const real rounding = 100 * std::numeric_limits<real>::epsilon() * exact.size(here.p, theirs.p) / here.lambda;
+  const real above = exact.difference(here.p, theirs.p) / here.lambda;
+  INFO("objective above that of the multiplicative step by "
+       << static_cast<double>(above) << ", whose gap is " << static_cast<double>(theirs.gap / here.lambda));
+  CHECK(above <= here.gap / here.lambda + rounding);
+  // Fractions are doubles: what they miss their floors by is as many parts of λ as their sum is off.
+  CHECK(above >= -theirs.gap / here.lambda - rounding - 1e-15L * static_cast<real>(on.techniques()));
   if (theirs.gap <= 1e-6L * here.lambda) ++count.compared;
 }
 
@@ -378,7 +393,8 @@ void solve_all(const char* name_of_kind, problem_kind kind) {
       solve(name, divergence, on, normalise ? control_variate::on : control_variate::off, count);
     });
   }
-  // The comparison must not be empty.
+  // The comparison must not be empty: of the 56 it holds .52 to .98, whatever the kind (PHIMIS_SEED=1, 2). A third is nearly three
+  // standard deviations below the least.
   if (!only) CHECK(count.compared >= count.solved / 3);
 }
 

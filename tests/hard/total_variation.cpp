@@ -119,11 +119,12 @@ bool check(const D& divergence, const random_problem& on, const step_problem& ex
     return false;
   }
   CHECK(found.status == rule_status::updated);
-  CHECK(above <= 1e-5);
+  // What the solver promises, and the rounding of two sums.
+  CHECK(above <= found.gap * found.lambda / on.rows() + 1e-14);
   return true;
 }
 
-/// Small, of all techniques' masses near 1, without what is wide.
+/// Small, of all techniques' masses near 1, without what is wide. Starts, too, are cut to so many techniques.
 random_problem some_problem(std::uint64_t seed, int techniques) {
   constexpr problem_kind kinds[] = {
       problem_kind::bumps,         problem_kind::dirichlet,  problem_kind::sparse,
@@ -139,6 +140,9 @@ random_problem some_problem(std::uint64_t seed, int techniques) {
     on.pdfs = on.pdfs.topLeftCorner(rows, techniques).eval();
     on.f = on.f.head(rows).eval();
     on.q = on.q.head(rows).eval();
+    if (on.start.size() > 0) on.start = on.start.head(techniques).eval();
+    if (on.start.size() > 0 && on.start.sum() > 0) on.start /= on.start.sum();
+    if (!(on.start.sum() > 0)) on.start.resize(0);
     for (int j = 0; j < rows; ++j) {
       if (!(on.pdfs.row(j).maxCoeff() > 0)) on.f[j] = 0;
     }
@@ -147,14 +151,13 @@ random_problem some_problem(std::uint64_t seed, int techniques) {
     on.pdfs(0, 0) = 1;
     on.f[0] = 1;
   }
-  on.start.resize(0);
   return on;
 }
 
 }  // namespace
 
 // A row that dominates few others may leave nothing of the last digits of a rounded kink: of three techniques once in 1200
-// problems, of many in one or two of sixty. Then the status must say so, which `check` checks.
+// problems, of many in none to two of sixty (PHIMIS_SEED=1 to 5). Then the status must say so, which `check` checks.
 TEST_CASE("Total variation of two techniques is minimised to the vertex of its linear program") {
   int unsolved = 0;
   for (std::uint64_t i = 0; i < 60; ++i) {
@@ -191,5 +194,5 @@ TEST_CASE("Total variation of many techniques is minimised to within a dual boun
     const double least = on.techniques() == 2 ? exact.minimum_of_two() : exact.bound(at);
     unsolved += check(phimis::total_variation{}, on, exact, least) ? 0 : 1;
   }
-  CHECK(unsolved <= 3);
+  CHECK(unsolved <= 2);
 }
