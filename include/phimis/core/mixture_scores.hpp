@@ -31,7 +31,7 @@ struct power_block {
 
   template <class V, class Real>
   PHIMIS_HOST_DEVICE V score(const V& w, const V& u, const V& x, V& a, V& b, V& c) const noexcept {
-    const V r = Real(1) / x;
+    const V r = inverse_of<Real>(x, u);
     const power_term<V> term = power.template term<Real>(w, u, x, r);
     a = exponent < 0 ? -term.score : term.score;
     c = term.score;

@@ -114,7 +114,7 @@ struct power_terms {
   template <class V>
   PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[3]) const noexcept {
     const auto row = rows.template at<V>(j);
-    const V r = Real(1) / row.x;
+    const V r = inverse_of<Real>(row.x, row.u);
     const V e = row.d * r;
     const power_term<V> term = power.template term<Real>(row.w, row.u, row.x, r);
     const V tilt = row.d * term.score;
@@ -163,7 +163,7 @@ struct variance_terms {
   template <class V>
   PHIMIS_HOST_DEVICE void add(std::ptrdiff_t j, V (&sums)[9]) const noexcept {
     const auto row = rows.template at<V>(j);
-    const V r = Real(1) / row.x;
+    const V r = inverse_of<Real>(row.x, row.u);
     const V e = row.d * r;
     const V s1 = rows.k1 * row.y1 * r;  // p_k/p
     const V s2 = rows.k2 * row.y2 * r;

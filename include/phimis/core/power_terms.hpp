@@ -20,6 +20,17 @@ struct power_term {
   V part;
 };
 
+/// 1/x of a row whose terms are all multiples of f = u. A row that no fraction reaches has x near the smallest
+/// number, and compilers that multiply in any order take (u r)² for u² r², 0 · ∞ where u is 0.
+template <class Real, class V>
+PHIMIS_HOST_DEVICE V inverse_of(const V& x, [[maybe_unused]] const V& u) noexcept {
+#ifdef __FAST_MATH__
+  return u == V{} ? V{} : Real(1) / x;
+#else
+  return Real(1) / x;
+#endif
+}
+
 /// The terms of one row in the power family, t = u/x, r = 1/x. Where s/t is simple, no power of t is formed.
 struct power_half {
   static constexpr bool packed = true;
