@@ -374,6 +374,33 @@ TEST_CASE("A subnormal floor under a prior is kept by the update after, too") {
   }
 }
 
+TEST_CASE("A subnormal floor is kept where pdfs of 1e156 are normalised") {
+  // The fraction times κ = 1e-156 vanished.
+  if (subnormals_are_zero()) return;
+  const auto check = [](const auto& divergence) {
+    for (const auto variate : {control_variate::on, control_variate::off}) {
+      rule_options<double, 2> options;
+      options.start = {{1, 8e-295}};
+      options.floors = {{0.25, 1.9e-312}};
+      options.prior = 1.0 / 64;
+      auto rule = phimis::exact_rule<2>(divergence, options, variate);
+      rule.observe({0.140625, {{0.09375, 0.015625}}, 3.5e-158, 1});
+      rule.observe({1.5, {{1, 0.015625}}, 0.5, 0});
+      rule.observe({0.109375, {{0.015625, 0.015625}}, 0.015625, 0});
+      rule.update();
+      CHECK(rule.fractions()[0] >= options.floors[0]);
+      CHECK(rule.fractions()[1] >= options.floors[1]);
+      CHECK(rule.fractions()[0] + rule.fractions()[1] == 1);
+    }
+  };
+  check(phimis::one_sample_variance{});
+  check(phimis::multi_sample_variance{});
+  check(phimis::total_variation{});
+  check(phimis::kullback_leibler{});
+  check(phimis::reversed<phimis::kullback_leibler>{});
+  check(phimis::pearson_vajda{1.5});
+}
+
 TEST_CASE("Of f so small that its mean has no inverse, fractions stay, and the status says so") {
   if (subnormals_are_zero()) return;
   rule_options<double, 2> two;

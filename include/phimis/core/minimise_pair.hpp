@@ -101,7 +101,16 @@ class pair_minimisation {
         result.status = rule_status::not_converged;
         return result;
       }
-      set(alpha, first / (first + second), second / (first + second));
+      const double share1 = first / (first + second);
+      const double share2 = second / (first + second);
+      // A floor near the smallest number may vanish on the way to the solver's fractions.
+      if (share1 < floor1) {
+        set(alpha, floor1, 1 - floor1);
+      } else if (share2 < floor2) {
+        set(alpha, 1 - floor2, floor2);
+      } else {
+        set(alpha, share1, share2);
+      }
     }
     const bool solved = converged || !(result.solution.residual > 0);
     result.status = !solved ? rule_status::not_converged : local ? rule_status::local : rule_status::updated;
