@@ -55,10 +55,11 @@ void validate(const count_independent<Heuristic>& heuristic) {
 template <class Real>
 void validate(std::span<const Real> start, std::span<const Real> floors, std::span<const Real> costs,
               std::span<const bool> frozen, Real prior) {
-  const Real rounding = 4 * static_cast<Real>(start.size()) * std::numeric_limits<Real>::epsilon();
-  Real least = 0;
-  Real bound = 0;
-  Real all = 0;
+  // What fractions may be off by; sums that are rounded themselves would let a little more pass.
+  const long double rounding = 4.0L * static_cast<long double>(start.size()) * std::numeric_limits<Real>::epsilon();
+  long double least = 0;
+  long double bound = 0;
+  long double all = 0;
   for (std::size_t k = 0; k < start.size(); ++k) {
     require(is_density(floors[k]), "floors", "must be finite and not negative", floors[k]);
     require(is_density(start[k]), "start", "must be finite and not negative", start[k]);
@@ -67,9 +68,10 @@ void validate(std::span<const Real> start, std::span<const Real> floors, std::sp
     bound += frozen[k] ? start[k] : floors[k];
     all += start[k];
   }
-  require(least <= 1 + rounding, "floors", "must sum to at most 1", least);
-  require(all >= 1 - rounding && all <= 1 + rounding, "start", "must sum to 1", all);
-  require(bound <= 1 + rounding, "floors", "must leave room for the frozen techniques", bound);
+  require(least <= 1 + rounding, "floors", "must sum to at most 1", static_cast<Real>(least));
+  require(all >= 1 - rounding && all <= 1 + rounding, "start", "must sum to 1", static_cast<Real>(all));
+  require(bound <= 1 + rounding, "floors", "must leave room for the frozen techniques",
+          static_cast<Real>(bound));
   require(is_density(prior), "prior", "must be finite and not negative", prior);
 }
 

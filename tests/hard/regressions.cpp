@@ -374,6 +374,17 @@ TEST_CASE("A subnormal floor under a prior is kept by the update after, too") {
   }
 }
 
+TEST_CASE("Floors and frozen techniques that sum past one by more than fractions may are refused, whatever the sum's rounding") {
+  rule_options<float, 3> options;
+  options.start = {{0, 0.010204081423580647F, 0.98979592323303223F}};
+  options.frozen = {{false, true, true}};
+  // 12 ε and 12.08 ε: summed in float the same.
+  options.floors = {{1.425e-06F, 0, 0}};
+  CHECK_NOTHROW(phimis::exact_rule<3>(phimis::tsallis{1}, options));
+  options.floors = {{1.4354205e-06F, 0, 0}};
+  CHECK_THROWS(phimis::exact_rule<3>(phimis::tsallis{1}, options));
+}
+
 TEST_CASE("A subnormal floor is kept where pdfs of 1e156 are normalised") {
   // The fraction times κ = 1e-156 vanished.
   if (subnormals_are_zero()) return;
