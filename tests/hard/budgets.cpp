@@ -19,16 +19,6 @@ using namespace hard;
 using phimis::rounding;
 using phimis::sampling_model;
 
-const phimis::technique_set pair(power_of{0}, power_of{1});
-const phimis::technique_set powers(power_of{0}, power_of{1}, power_of{2});
-
-/// Two techniques, for which there are Newton's rules, and three.
-template <class Body>
-void for_two_and_three(const Body& body) {
-  body(pair);
-  body(powers);
-}
-
 double f(double x) { return 0.3 + x * x; }  // ∫ = .6333
 constexpr double mu = 0.3 + 1.0 / 3;
 

@@ -46,6 +46,13 @@ struct power_of {
   }
 };
 
+/// Two powers of x, for which there are Newton's rules, and three.
+template <class Body>
+void for_two_and_three(const Body& body) {
+  body(phimis::technique_set(power_of{0}, power_of{1}));
+  body(phimis::technique_set(power_of{0}, power_of{1}, power_of{2}));
+}
+
 template <class Real, int M>
 using observations = std::vector<phimis::observation<Real, M>>;
 

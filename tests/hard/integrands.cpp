@@ -20,15 +20,7 @@ using namespace hard;
 using phimis::control_variate;
 using phimis::rule_status;
 
-const phimis::technique_set two_powers(power_of{0}, power_of{1});
 const phimis::technique_set powers(power_of{0}, power_of{1}, power_of{2});
-
-/// Two techniques, for which there are Newton's rules, and three.
-template <class Body>
-void for_two_and_three(const Body& body) {
-  body(two_powers);
-  body(powers);
-}
 
 /// Whether a rule looks at the sign of f: estimates have it, divergences do not.
 template <class Rule>
